@@ -1,0 +1,20 @@
+# What every target of this project is compiled with.
+add_library(pentaprism_options INTERFACE)
+target_compile_features(pentaprism_options INTERFACE cxx_std_20)
+# A decision must not depend on what the compiler fuses: fused operations are written out (docs/develop/architecture.md).
+target_compile_options(pentaprism_options INTERFACE -ffp-contract=off -Wall -Wextra)
+if(PENTAPRISM_WERROR)
+  target_compile_options(pentaprism_options INTERFACE -Werror)
+endif()
+if(PENTAPRISM_SANITIZE)
+  target_compile_options(pentaprism_options INTERFACE -fsanitize=${PENTAPRISM_SANITIZE} -fno-omit-frame-pointer
+                         -fno-sanitize-recover=all)
+  target_link_options(pentaprism_options INTERFACE -fsanitize=${PENTAPRISM_SANITIZE})
+endif()
+if(PENTAPRISM_COVERAGE)
+  target_compile_options(pentaprism_options INTERFACE --coverage)
+  target_link_options(pentaprism_options INTERFACE --coverage)
+endif()
+if(PENTAPRISM_ISA_LIMIT STREQUAL "scalar")
+  target_compile_definitions(pentaprism_options INTERFACE PENTAPRISM_SCALAR_ONLY)
+endif()

@@ -1,0 +1,76 @@
+#pragma once
+// From a scene to pixels. A frame is delivered in bands of rows, top to bottom, so a picture never has to fit in memory.
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <pentaprism/scene.h>
+#include <pentaprism/settings.h>
+#include <pentaprism/stats.h>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace pentaprism {
+
+/// What is known of a frame before its first pixel: it goes into the header of an EXR file.
+struct FrameInfo {
+    int width = 0, height = 0;                    ///< of the whole picture
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;           ///< the part that is rendered, half open
+    double frame = 0.0, fps = 24.0;
+    double shutter_open = 0.0, shutter_close = 0.0;  ///< seconds
+    double lens_radius = 0.0;                     ///< metres, 0: pinhole
+    double focus_distance = 0.0;                  ///< metres; 0 for a pinhole
+    double fstop = 0.0;                           ///< 0 for a pinhole
+    double focal_length_mm = 0.0;
+    std::array<double, 16> world_to_camera{};     ///< column-major, at mid-shutter; camera looks along -z
+    std::array<double, 16> world_to_ndc{};        ///< column-major, at mid-shutter; NDC in [-1,1], y up
+    std::string camera;
+    int max_motion_segments = 1;
+};
+
+/// Rows y0 .. y0 + count - 1 of the picture, x from FrameInfo::x0 to x1. `rgba` holds 4 floats a pixel: linear colour
+/// with exposure applied, premultiplied by alpha where the background is absent; alpha is coverage. `z` holds one float
+/// a pixel: the depth along the optical axis (metres) of the closest sample, +infinity where nothing is hit.
+struct PixelRows {
+    int y0 = 0, count = 0, width = 0;
+    std::span<const float> rgba, z;
+};
+
+/// Receives a frame. begin() is called once, then rows() for bands from top to bottom that together are the picture.
+class RowSink {
+  public:
+    virtual ~RowSink() = default;
+    virtual void begin(const FrameInfo& info) = 0;
+    virtual void rows(const PixelRows& band) = 0;
+};
+
+/// Called now and then from one thread at a time with the part of the frame that is done, 0 to 1. Returning false stops
+/// the frame: render_frame throws Error(kRender) "interrupted".
+using Progress = std::function<bool(double done)>;
+
+/// Renders frame number `frame` into `sink`. Throws Error. The same input gives the same pixels, bit for bit, for any
+/// number of threads, tile size and CPU target.
+void render_frame(const Scene& scene, const RenderSettings& settings, double frame, RowSink& sink, RenderStats& stats,
+                  const Progress& progress = {});
+
+/// A whole picture in memory, row by row from the top.
+struct Picture {
+    int width = 0, height = 0;
+    std::vector<float> rgba;  ///< 4 * width * height
+    std::vector<float> z;     ///< width * height
+    FrameInfo info;
+};
+Picture render_picture(const Scene& scene, const RenderSettings& settings, double frame, RenderStats& stats);
+
+/// Names for `--culling`: "auto" first, then each culling test, with one line on what it is.
+struct CullingChoice {
+    std::string name, description;
+};
+std::vector<CullingChoice> culling_tests();
+
+/// The CPU target in use: avx512, avx2, neon or scalar (the environment's PENTAPRISM_ISA, else the best there is).
+/// Throws Error(kUsage) if the environment names a target that this processor or build does not have.
+std::string cpu_target();
+
+}  // namespace pentaprism

@@ -1,0 +1,69 @@
+#pragma once
+// Everything that decides how a frame looks, apart from the scene. Defaults are those of the command line.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace pentaprism {
+
+enum class Filter : std::uint8_t { kBox, kTent, kGaussian, kBlackmanHarris };
+enum class ToneMap : std::uint8_t { kNone, kAces, kFilmic };
+enum class ShutterPosition : std::uint8_t { kStart, kCenter, kEnd };
+
+struct ImageSettings {
+    int width = 1280, height = 720;  ///< pixels, 1 to 16384
+    int spp = 16;                    ///< samples per pixel, 1 to 4096
+    Filter filter = Filter::kBlackmanHarris;
+    std::optional<std::array<int, 4>> crop;  ///< X0, X1, Y0, Y1 in pixels, half open: equals that part of the whole
+    double exposure = 0.0;                   ///< EV: colours are multiplied by 2^exposure
+    ToneMap tonemap = ToneMap::kAces;        ///< PNG only
+    std::optional<std::array<float, 3>> background;  ///< linear; unset: the scene's, else black
+};
+
+/// An unset value comes from the scene's camera (LensInfo), else from the default in the comment.
+struct CameraSettings {
+    std::string camera;  ///< name or index; empty: the first, else one that frames the scene
+    std::optional<double> focal_length_mm;  ///< changes the field of view: tan(fovx / 2) = sensor / (2 focal length)
+    std::optional<double> sensor_width_mm;  ///< 36
+    bool defocus = true;                    ///< false: a pinhole whatever else is said
+    std::optional<double> fstop;            ///< unset: a pinhole
+    std::optional<double> lens_radius;      ///< metres; instead of fstop
+    std::optional<double> focus_distance;   ///< metres along the axis; unset: the middle of what is seen
+    std::string focus_object;               ///< node whose bounding box centre at mid-shutter is in focus
+    std::optional<std::array<double, 2>> focus_pixel;  ///< pixel whose nearest surface at mid-shutter is in focus
+    std::optional<int> aperture_blades;                ///< 0: a disk, else 3 or more
+    std::optional<double> aperture_rotation_deg;       ///< 0
+    std::optional<double> aperture_ratio;              ///< 1; height of the circle of confusion over its width
+};
+
+struct ShutterSettings {
+    bool motion_blur = true;        ///< false: everything stands still at mid-shutter
+    std::optional<double> shutter;  ///< open time in frames; 0.5
+    ShutterPosition position = ShutterPosition::kCenter;  ///< where the frame's time lies in the open time
+    int motion_segments = 0;        ///< straight pieces of each path; 0: as many as keep the error below 0.1 pixel
+};
+
+struct AnimationSettings {
+    double fps = 24.0;              ///< frame N is at N / fps seconds
+    std::string animation = "all";  ///< name or index of one clip, or "all"
+};
+
+struct MethodSettings {
+    std::string culling = "auto";   ///< a name of culling_tests()
+    std::string shading = "pixel";  ///< how often visible surfaces are shaded
+    std::uint32_t seed = 0;         ///< of the sample pattern
+    int threads = 0;                ///< 0: all processors
+    int tile_size = 32;             ///< pixels, 8, 16 or 32: never changes the picture
+};
+
+struct RenderSettings {
+    ImageSettings image;
+    CameraSettings camera;
+    ShutterSettings shutter;
+    AnimationSettings animation;
+    MethodSettings method;
+};
+
+}  // namespace pentaprism

@@ -1,0 +1,37 @@
+#pragma once
+// Every sample of a frame against an independent ray tracer, and a subset of them against brute force in double.
+
+#include <cstdint>
+#include <pentaprism/render.h>
+#include <string>
+
+namespace pentaprism {
+
+struct VerifyReport {
+    std::string scene, reference;    ///< reference: "embree VERSION" and/or "brute force"
+    int width = 0, height = 0, spp = 0;
+    std::int64_t samples = 0;
+    std::int64_t disagreements = 0;  ///< samples whose triangle or depth differ from the reference's
+    double per_million = 0.0;        ///< ours_wrong in a million samples
+    std::int64_t ours_wrong = 0;     ///< disagreements in which double precision is against us
+    std::int64_t away_from_edge = 0; ///< of them: over 1e-2 pixel from the nearest edge of each triangle concerned, and
+                                     ///< depths that differ by over 1e-5 relative
+    double worst_margin = 0.0;       ///< largest such distance in pixels among ours_wrong
+    double worst_depth_error = 0.0;  ///< largest relative depth error where both agree on the triangle
+    std::int64_t brute_force_samples = 0;      ///< compared with the brute-force reference, too
+    std::int64_t brute_force_disagreements = 0;
+};
+
+/// Renders frame `frame` and checks it. Throws Error(kBackend) when neither reference can be had.
+VerifyReport verify_frame(const Scene& scene, const RenderSettings& settings, double frame, const Progress& progress = {});
+
+/// Visibility alone, timed against Embree on the same samples: medians of alternating runs, milliseconds.
+struct PeerTimes {
+    std::string scene, peer;
+    int width = 0, height = 0, spp = 0, threads = 0, runs = 0;
+    double build_ms = 0.0, trace_ms = 0.0, ours_ms = 0.0;
+    double ratio() const { return ours_ms > 0.0 ? (build_ms + trace_ms) / ours_ms : 0.0; }
+};
+PeerTimes time_against_embree(const Scene& scene, const RenderSettings& settings, double frame, int runs);
+
+}  // namespace pentaprism

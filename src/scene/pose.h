@@ -1,0 +1,53 @@
+#pragma once
+// The scene at one moment: animation, node hierarchy, skins and morph targets. Everything between the file's data and
+// world-space vertices; nothing here knows of cameras' projections or pixels.
+
+#include <glm/mat4x4.hpp>
+#include <pentaprism/scene.h>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace pentaprism {
+
+/// One primitive of one mesh, placed once. `instance` is an index into Node::instances, or kNone.
+struct Placement {
+    Index node = kNone, mesh = kNone, primitive = kNone, instance = kNone;
+};
+
+/// All that the shown scene places, depth first from the roots, primitives and instances in order: the order of triangles in
+/// a frame, and so part of what the same input means.
+std::vector<Placement> placements(const Scene& scene);
+
+/// Which clips play. "all", a name or an index, resolved by choose_animations (throws Error(kUsage) for an unknown one).
+std::vector<Index> choose_animations(const Scene& scene, const std::string& choice);
+
+/// The state of every node at one time.
+struct Pose {
+    std::vector<glm::dmat4> world;            ///< node to world
+    std::vector<std::vector<float>> weights;  ///< morph weights in force, for each node with a morphed mesh
+};
+
+/// Clips play once, from time 0: before the first and after the last key the nearest key holds (glTF 2.0). Rotations by
+/// slerp; all arithmetic in double.
+Pose evaluate(const Scene& scene, std::span<const Index> animations, double time);
+
+/// False promises that the placement's world-space vertices are the same at all times.
+bool may_move(const Scene& scene, std::span<const Index> animations, const Placement& placement);
+
+/// True when the vertices follow one matrix (no skin, no morph targets): world = placement_matrix * position.
+bool is_rigid(const Scene& scene, const Placement& placement);
+glm::dmat4 placement_matrix(const Scene& scene, const Pose& pose, const Placement& placement);
+
+/// True when the placement turns counter-clockwise triangles clockwise (negative determinant).
+bool is_mirrored(const Scene& scene, const Pose& pose, const Placement& placement);
+
+/// World-space positions of all vertices of the placement: morph first, then skin or matrix. `out` has one entry for each
+/// vertex. A skinned mesh ignores its node's own transform (glTF 2.0, 3.7.3.3).
+void pose_positions(const Scene& scene, const Pose& pose, const Placement& placement, std::span<glm::dvec3> out);
+
+/// World-space normals (unit length), by the inverse transpose of the same transforms; for a mirrored placement they
+/// still point to the side that is counter-clockwise in the file.
+void pose_normals(const Scene& scene, const Pose& pose, const Placement& placement, std::span<glm::vec3> out);
+
+}  // namespace pentaprism
