@@ -8,6 +8,12 @@ namespace pentaprism::builtin {
 /// Two linear colours in `squares` x `squares` fields with hard edges.
 Image checker_texture(std::string name, int size, int squares, glm::dvec3 dark, glm::dvec3 light);
 
+/// Bands of two linear colours across the diagonal, repeating.
+Image stripe_texture(std::string name, int size, int stripes, glm::dvec3 dark, glm::dvec3 light);
+
+/// Rings of two linear colours about the centre, within a frame of the first.
+Image target_texture(std::string name, int size, int rings, glm::dvec3 dark, glm::dvec3 light);
+
 /// Grey furrows along v, to be tinted by vertex colours.
 Image bark_texture();
 
