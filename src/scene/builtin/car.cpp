@@ -16,7 +16,7 @@ namespace pentaprism::builtin {
 namespace {
 
 constexpr double kDuration = 2.0;
-constexpr double kSpeed = 15.0;  // metres per second along +x
+constexpr double kSpeed = 18.0;  // metres per second along +x
 constexpr double kTwoPi = 6.283185307179586;
 constexpr double kTrack = 0.72, kFront = 1.22, kRear = -1.12;  // half width between wheels; axles
 constexpr double kFrontRadius = 0.29, kRearRadius = 0.34;
@@ -73,6 +73,8 @@ Image livery(std::string name, glm::dvec3 base, glm::dvec3 stripe, int number) {
     };
     constexpr int kWidth = 512, kHeight = 512;
     Image image{std::move(name), kWidth, kHeight, {}};
+    const Section side = section(0.40);
+    const double per_u = kTwoPi * 0.5 * (side.top - side.bottom);
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x) {
             const double u = (x + 0.5) / kWidth, v = (y + 0.5) / kHeight;
@@ -83,8 +85,6 @@ Image livery(std::string name, glm::dvec3 base, glm::dvec3 stripe, int number) {
             struct Roundel {
                 double u, v, up, right, radius;
             };
-            const Section side = section(0.40);
-            const double per_u = kTwoPi * 0.5 * (side.top - side.bottom);
             for (const Roundel& r : {Roundel{0.5, 0.40, 1.0, 1.0, 0.19}, Roundel{1.0, 0.40, -1.0, -1.0, 0.19},
                                      Roundel{0.0, 0.40, -1.0, -1.0, 0.19}}) {
                 const double dy = (u - r.u) * per_u * r.up / r.radius, dx = (v - r.v) * 3.72 * r.right / r.radius;
@@ -99,35 +99,35 @@ Image livery(std::string name, glm::dvec3 base, glm::dvec3 stripe, int number) {
 
 Primitive body(Index material) {
     MeshBuilder m;
-    m.surface(48, 72, body_point);
+    m.surface(32, 48, body_point);
     return m.take(material);
 }
 
 /// Cockpit, driver, windscreen frame, engine, exhausts, suspension: everything that does not turn.
 Primitive fittings(Index material, glm::dvec3 helmet) {
     MeshBuilder m;
-    const glm::dvec3 black{0.015, 0.015, 0.017}, steel{0.45, 0.45, 0.47}, chrome{0.62, 0.62, 0.65};
+    const glm::dvec3 black{0.015, 0.015, 0.017}, steel{0.26, 0.26, 0.28}, chrome{0.40, 0.40, 0.43};
     m.color = black;
-    m.ellipsoid({0.06, 0.665, 0.0}, {0.40, 0.07, 0.255}, 28, 12);  // the cockpit's opening
+    m.ellipsoid({0.06, 0.665, 0.0}, {0.40, 0.07, 0.255}, 22, 8);  // the cockpit's opening
     m.color = {0.10, 0.04, 0.02};
     m.tube({{{-0.32, 0.68, -0.2}, 0.03}, {{-0.42, 0.72, 0.0}, 0.035}, {{-0.32, 0.68, 0.2}, 0.03}}, 8, 12);
     // The driver: shoulders, helmet with peak, goggles, arms to the wheel.
     m.color = {0.55, 0.53, 0.48};
-    m.ellipsoid({-0.16, 0.68, 0.0}, {0.15, 0.16, 0.23}, 20, 12);
+    m.ellipsoid({-0.16, 0.66, 0.0}, {0.14, 0.15, 0.185}, 16, 10);
     m.color = helmet;
-    m.ellipsoid({-0.12, 0.925, 0.0}, {0.148, 0.15, 0.135}, 28, 18);
+    m.ellipsoid({-0.12, 0.905, 0.0}, {0.140, 0.14, 0.125}, 24, 14);
     m.color = {0.62, 0.36, 0.26};
-    m.ellipsoid({-0.055, 0.875, 0.0}, {0.105, 0.115, 0.105}, 18, 12);
+    m.ellipsoid({-0.055, 0.855, 0.0}, {0.100, 0.11, 0.1}, 14, 8);
     m.color = black;
-    m.ellipsoid({-0.005, 0.90, 0.0}, {0.07, 0.038, 0.098}, 18, 10);
+    m.ellipsoid({-0.005, 0.885, 0.0}, {0.07, 0.036, 0.095}, 12, 6);
     m.color = 0.7 * helmet;
-    m.ellipsoid({0.03, 0.955, 0.0}, {0.085, 0.012, 0.09}, 18, 6);
+    m.ellipsoid({0.03, 0.935, 0.0}, {0.08, 0.012, 0.085}, 14, 4);
     for (const double side : {1.0, -1.0}) {
         m.color = {0.55, 0.53, 0.48};
-        m.tube({{{-0.14, 0.74, 0.20 * side}, 0.055},
-                {{0.08, 0.66, 0.235 * side}, 0.05},
-                {{0.26, 0.69, 0.13 * side}, 0.04}},
-               9, 10);
+        m.tube({{{-0.14, 0.73, 0.16 * side}, 0.05},
+                {{0.06, 0.68, 0.18 * side}, 0.045},
+                {{0.26, 0.70, 0.12 * side}, 0.035}},
+               8, 6);
     }
     m.color = black;
     std::vector<TubePoint> rim;
@@ -135,7 +135,7 @@ Primitive fittings(Index material, glm::dvec3 helmet) {
         rim.push_back({{0.28 + 0.04 * std::sin(kTwoPi * k / 12.0), 0.68 + 0.12 * std::sin(kTwoPi * k / 12.0),
                         0.13 * std::cos(kTwoPi * k / 12.0)},
                        0.013});
-    m.tube(rim, 6, 36);
+    m.tube(rim, 5, 20);
 
     // Engine: two rows of trumpets, cam covers, long exhausts.
     for (const double side : {1.0, -1.0}) {
@@ -150,13 +150,13 @@ Primitive fittings(Index material, glm::dvec3 helmet) {
             m.color = chrome;
             m.tube(
                 {{{x, 0.64, 0.045 * side}, 0.026}, {{x, 0.78, 0.05 * side}, 0.028}, {{x, 0.815, 0.05 * side}, 0.045}},
-                12, 7);
+                10, 5);
             m.color = {0.30, 0.22, 0.15};
             m.tube({{{x, 0.60, 0.15 * side}, 0.024},
                     {{x - 0.03, 0.56, 0.29 * side}, 0.024},
                     {{x - 0.25, 0.50, 0.30 * side}, 0.024},
                     {{-1.45, 0.47, 0.26 * side}, 0.026}},
-                   8, 14);
+                   6, 9);
         }
         m.color = {0.42, 0.34, 0.26};
         m.tube({{{-1.38, 0.47, 0.26 * side}, 0.05},
@@ -228,7 +228,7 @@ std::vector<Primitive> wheel(double radius, double width, Index rubber, Index me
              {0.97 * radius, 0.9 * h},
              {0.86 * radius, 1.02 * h},
              {rim, 0.8 * h}},
-            44, 18, [](double u, double v, glm::dvec3) {
+            30, 13, [](double u, double v, glm::dvec3) {
                 const bool letters =
                     v > 0.80 && v < 0.87 && std::sin(kTwoPi * 3.0 * u) > 0.2 && std::sin(kTwoPi * 22.0 * u) > -0.3;
                 const double tread = v > 0.33 && v < 0.67 ? 0.8 + 0.2 * std::sin(60.0 * v) : 1.0;
@@ -244,10 +244,10 @@ std::vector<Primitive> wheel(double radius, double width, Index rubber, Index me
              {0.92 * rim, 0.72 * h},
              {0.9 * rim, 0.0},
              {0.92 * rim, -0.75 * h}},
-            36, 12);
+            26, 9);
     m.lathe(
         {{0.17 * rim, -0.8 * h}, {0.2 * rim, -0.2 * h}, {0.17 * rim, 0.5 * h}, {0.12 * rim, 0.95 * h}, {0.0, 1.0 * h}},
-        18, 8);
+        12, 6);
     m.color = {0.7, 0.6, 0.25};
     m.transform = glm::dmat4(1.0);
     m.tube({{{-0.24 * rim, 0.0, 0.93 * h}, 0.012}, {{0.0, 0.0, 0.99 * h}, 0.026}, {{0.24 * rim, 0.0, 0.93 * h}, 0.012}},
@@ -266,8 +266,19 @@ std::vector<Primitive> wheel(double radius, double width, Index rubber, Index me
     return parts;
 }
 
+/// What the car's belly takes from the sky's light: darkness on the road, drawn.
+Index add_soft_shadow(Assembly& scene) {
+    Material dark = painted("soft shadow", 1.0);
+    dark.base_color_texture = texture(scene.add(soft_spot_texture("soft shadow", {0.012, 0.012, 0.016}, 0.92)));
+    dark.base_color_texture.wrap_s = dark.base_color_texture.wrap_t = Wrap::kClampToEdge;
+    dark.alpha_mode = AlphaMode::kBlend;
+    MeshBuilder m;
+    m.surface(1, 1, [](double u, double v) { return glm::dvec3(-2.3 + 4.5 * u, 0.0, 1.15 - 2.3 * v); });
+    return scene.add_mesh("soft shadow", m.take(scene.add(dark)));
+}
+
 struct CarKind {
-    Index body, front_wheel, rear_wheel;
+    Index front_wheel, rear_wheel, shadow;
 };
 
 struct CarMaterials {
@@ -291,6 +302,7 @@ Index add_car(Assembly& scene, const std::string& name, const CarMaterials& mate
         return turn({0.0, 0.0, 1.0}, degrees(0.35 * std::sin(17.0 * t + phase))) *
                turn({1.0, 0.0, 0.0}, degrees(1.1 + 0.4 * std::sin(13.0 * t + phase)));
     });
+    scene.add_node(name + " shadow", car, {{0.0, 0.01, 0.0}, {1.0, 0.0, 0.0, 0.0}, glm::dvec3(1.0)}, wheels.shadow);
     for (const double axle : {kFront, kRear})
         for (const double side : {1.0, -1.0}) {
             const double radius = axle > 0.0 ? kFrontRadius : kRearRadius;
@@ -318,6 +330,7 @@ void add_cars(Assembly& scene) {
     glass.double_sided = true;
     const CarMaterials materials{scene.add(rubber), scene.add(metal), scene.add(fittings), scene.add(glass)};
     CarKind wheels{};
+    wheels.shadow = add_soft_shadow(scene);
     wheels.front_wheel = scene.add_mesh("front wheel", wheel(kFrontRadius, 0.19, materials.rubber, materials.metal));
     wheels.rear_wheel = scene.add_mesh("rear wheel", wheel(kRearRadius, 0.26, materials.rubber, materials.metal));
     add_car(
@@ -325,12 +338,12 @@ void add_cars(Assembly& scene) {
         {0.85, 0.82, 0.75}, [](double t) { return glm::dvec3(kSpeed * t + 0.10 * std::sin(2.0 * t), 0.0, 0.0); }, 0.4);
     add_car(
         scene, "red car", materials, wheels, livery("red livery", {0.52, 0.012, 0.010}, {0.85, 0.83, 0.78}, 2),
-        {0.05, 0.12, 0.5}, [](double t) { return glm::dvec3(kSpeed * t - 4.6 + 0.9 * (t - 1.0), 0.0, -2.5); }, 1.9);
+        {0.05, 0.12, 0.5}, [](double t) { return glm::dvec3(kSpeed * t - 4.1 + 0.9 * (t - 1.0), 0.0, -2.5); }, 1.9);
 }
 
 // ---------------------------------------------------------------- the road and what stands beside it
 
-constexpr double kFrom = -34.0, kTo = 76.0;  // metres along x
+constexpr double kFrom = -34.0, kTo = 84.0;  // metres along x
 
 void add_road(Assembly& scene) {
     Material asphalt = painted("asphalt", 0.85), grass = painted("verge", 0.95);
@@ -427,14 +440,14 @@ void add_roadside(Assembly& scene) {
             8);
         const Palette palette = kind == 0 ? Palette{{0.05, 0.16, 0.03}, {0.20, 0.34, 0.06}, {0.45, 0.40, 0.08}, 0.1}
                                           : Palette{{0.20, 0.20, 0.03}, {0.48, 0.36, 0.06}, {0.50, 0.22, 0.04}, 0.2};
-        for (int k = 0; k < 300; ++k) {
+        for (int k = 0; k < 165; ++k) {
             const glm::dvec3 d = random.direction();
             const double r = std::cbrt(random.uniform());
             Blade leaf;
             leaf.base = glm::dvec3(0.0, 4.3, 0.0) + r * d * glm::dvec3(1.9, 2.2, 1.9);
             leaf.axis = random.direction() + 0.5 * d;
             leaf.face = glm::dvec3(0.0, 0.8, 0.0) + d;
-            leaf.length = random.range(0.5, 0.8);
+            leaf.length = random.range(0.6, 1.0);
             leaf.width = 0.45 * leaf.length;
             leaf.bend = 0.6;
             leaf.fold = 0.3;
@@ -447,7 +460,7 @@ void add_roadside(Assembly& scene) {
         crowns.push_back(scene.add_mesh("tree", std::move(parts)));
     }
     for (int k = 0; k < 17; ++k) {
-        const double x = kFrom + 6.3 * k + random.around(0.0, 1.6), z = -15.0 - 11.0 * random.uniform();
+        const double x = kFrom + 6.8 * k + random.around(0.0, 1.6), z = -15.0 - 11.0 * random.uniform();
         const double yaw = random.angle();
         const Index node = scene.add_node(
             "tree", kNone,
@@ -459,11 +472,11 @@ void add_roadside(Assembly& scene) {
     MeshBuilder tuft;
     add_grass_tuft(tuft, random, 12, 1.0, {{0.10, 0.20, 0.03}, {0.35, 0.42, 0.10}, {0.6, 0.5, 0.2}, 0.15});
     const Index grass = scene.add_node("tall grass", kNone, {}, scene.add_mesh("tall grass", tuft.take(leafy)));
-    for (int k = 0; k < 60; ++k) {
-        const double x = glm::mix(-14.0, 50.0, (k + random.uniform()) / 60.0), z = random.range(3.6, 5.2),
+    for (int k = 0; k < 56; ++k) {
+        const double x = glm::mix(-10.0, 56.0, (k + random.uniform()) / 56.0), z = random.range(3.3, 4.9),
                      yaw = random.angle();
         scene.node(grass).instances.push_back(
-            {{x, -0.06, z}, turn({0.0, 1.0, 0.0}, yaw), glm::dvec3(random.range(0.3, 0.55))});
+            {{x, -0.06, z}, turn({0.0, 1.0, 0.0}, yaw), glm::dvec3(random.range(0.45, 0.75))});
     }
 }
 

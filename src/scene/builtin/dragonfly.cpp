@@ -173,12 +173,12 @@ void add_dragonflies(Assembly& pond) {
         return glm::dvec3(0.012 + 0.007 * (t - 1.0) + 0.003 * std::sin(3.1 * t),
                           0.058 + 0.004 * std::sin(2.3 * t + 1.0), 0.002 * std::sin(1.7 * t));
     };
-    const Index hero = pond.add_node("dragonfly", kNone, {hover(0.0), {1.0, 0.0, 0.0, 0.0}, glm::dvec3(0.00125)});
+    const Index hero = pond.add_node("dragonfly", kNone, {hover(0.0), {1.0, 0.0, 0.0, 0.0}, glm::dvec3(0.0015)});
     pond.animate_translation(hero, 25, hover);
     pond.animate_rotation(hero, 25, [](double t) {
         return turn({0.0, 1.0, 0.0}, degrees(58.0 + 3.0 * std::sin(1.9 * t))) *
                turn({1.0, 0.0, 0.0}, degrees(-9.0 + 3.0 * std::sin(2.3 * t))) *
-               turn({0.0, 0.0, 1.0}, degrees(24.0 + 3.0 * std::sin(2.9 * t)));
+               turn({0.0, 0.0, 1.0}, degrees(44.0 + 3.0 * std::sin(2.9 * t)));
     });
     add_dragonfly(pond, parts, hero, 4.0, 1.0);
 
@@ -209,7 +209,7 @@ void add_water(Assembly& pond) {
             // The sky's reflection is painted: bright bands where the ripples face it, more of them far away.
             const double band = fractal_noise({7.0 * p.x, 34.0 * p.z}, 4), distance = glm::smoothstep(-0.1, 1.6, -p.z);
             const double mirrored = glm::smoothstep(0.62 - 0.35 * distance, 0.80 - 0.25 * distance, band);
-            const glm::dvec3 deep{0.008, 0.036, 0.036}, sky{0.42, 0.36, 0.24};
+            const glm::dvec3 deep{0.008, 0.036, 0.036}, sky{0.30, 0.36, 0.28};
             return glm::mix(deep * (0.7 + 0.6 * band), sky, 0.75 * mirrored);
         });
     pond.add_node("water", kNone, {}, pond.add_mesh("water", m.take(pond.add(water))));
@@ -222,7 +222,7 @@ void add_water_lilies(Assembly& pond) {
     leathery.double_sided = true;
     MeshBuilder m;
     m.surface(
-        44, 9,
+        40, 8,
         [](double u, double v) {
             const double a = degrees(12.0) + degrees(336.0) * u;
             const double wave = 0.035 * std::sin(5.0 * a) * v * v;
@@ -317,8 +317,8 @@ void add_reeds(Assembly& pond) {
     plant(-0.20, -0.10, 0.30, 1);
     plant(0.27, -0.22, 0.34, 0);
     plant(-0.33, -0.38, 0.42, 0);
-    for (int k = 0; k < 14; ++k) {
-        const double z = -0.7 - 2.4 * k / 13.0;
+    for (int k = 0; k < 13; ++k) {
+        const double z = -0.7 - 2.4 * k / 12.0;
         const double x = (k % 2 == 0 ? -1.0 : 1.0) * (0.25 + random.uniform() * 0.75) * (0.25 - 0.62 * z);
         plant(x, z, random.range(0.45, 0.9), k % 2);
     }
@@ -375,7 +375,7 @@ void add_camera_and_light(Assembly& pond) {
     });
     pond.add_sun("morning sun", {-0.55, 0.55, -0.35}, {1.0f, 0.78f, 0.50f}, 6.0);
     pond.add_sun("sky", {0.2, 1.0, 0.3}, {0.60f, 0.80f, 1.0f}, 1.6);
-    pond.add_sun("fill", {0.5, 0.3, 1.0}, {0.9f, 0.9f, 0.8f}, 1.1);
+    pond.add_sun("fill", {0.5, 0.4, 1.0}, {1.0f, 0.92f, 0.82f}, 2.0);
 }
 
 }  // namespace

@@ -62,6 +62,15 @@ Image target_texture(std::string name, int size, int rings, glm::dvec3 dark, glm
     });
 }
 
+Image soft_spot_texture(std::string name, glm::dvec3 color, double alpha) {
+    return paint(std::move(name), 64, 64, [&](double u, double v) {
+        const double x = 2.0 * u - 1.0, y = 2.0 * v - 1.0;
+        const double fall =
+            (1.0 - glm::smoothstep(0.45, 1.0, std::abs(x))) * (1.0 - glm::smoothstep(0.3, 1.0, std::abs(y)));
+        return glm::dvec4(color, alpha * fall);
+    });
+}
+
 Image bark_texture() {
     return paint("bark", 128, 256, [](double u, double v) {
         // Noise on a cylinder, cut at a meridian: mixing the two ends makes it repeat in u and in v.
@@ -74,7 +83,7 @@ Image bark_texture() {
 }
 
 Image litter_texture() {
-    constexpr int kFlecks = 420;
+    constexpr int kFlecks = 260;
     struct Fleck {
         glm::dvec2 centre, along;
         double width, shade;

@@ -14,6 +14,9 @@ Image stripe_texture(std::string name, int size, int stripes, glm::dvec3 dark, g
 /// Rings of two linear colours about the centre, within a frame of the first.
 Image target_texture(std::string name, int size, int rings, glm::dvec3 dark, glm::dvec3 light);
 
+/// A blot of one colour, opaque in the middle and clear at the rim.
+Image soft_spot_texture(std::string name, glm::dvec3 color, double alpha);
+
 /// Grey furrows along v, to be tinted by vertex colours.
 Image bark_texture();
 
