@@ -178,7 +178,7 @@ glm::vec4 Pyramid::nearest(const Level& level, const TextureRef& ref, glm::vec2 
 }
 
 glm::vec4 Pyramid::sample(const TextureRef& ref, glm::vec2 uv, float level) const {
-    if (!(level > 0.0f) || !ref.mipmapped)
+    if (!(level > 0.0f) || (ref.nearest && !ref.mipmapped))
         return ref.nearest ? nearest(levels_[0], ref, uv) : bilinear(levels_[0], ref, uv);
     const float coarsest = static_cast<float>(level_count() - 1);
     if (level >= coarsest) return bilinear(levels_.back(), ref, uv);

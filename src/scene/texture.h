@@ -30,8 +30,8 @@ class Pyramid {
 
     /// Linear colour and opacity in [0, 1] at `uv`, after the texture's transform; v down, (0, 0) the top left corner
     /// of the image. `level` is log2 of the footprint's width in texels of level 0, clamped to the levels there are;
-    /// between two levels both are looked up and mixed. `ref` says how edges wrap and whether texels and levels are
-    /// mixed at all.
+    /// between two levels both are looked up and mixed. `ref` says how edges wrap. Levels are left out only where the
+    /// file asks for the nearest texel without levels (drawn pixels); a mere "linear" would alias.
     glm::vec4 sample(const TextureRef& ref, glm::vec2 uv, float level) const;
 
     /// Opacity alone, bilinear in level 0 whatever `ref.mipmapped` says: for alpha masks.
