@@ -4,7 +4,7 @@
 // Homogeneous edge functions (Olano & Greer 1997) on the vertices as the sample's lens position and time place them; the
 // watertight tie rule and condition (N) are this project's (docs/develop/algorithms.md, 2).
 
-#include "frame/local_triangle.h"
+#include "bound/local_triangle.h"
 
 namespace pentaprism {
 

@@ -71,9 +71,11 @@ class SampleTable {
     std::span<const Stratum> strata(int cx, int cy) const;
 
   private:
+    std::size_t cell_index(int cx, int cy) const;
     std::size_t block_index(int bx, int by) const;
 
     int spp_, period_;
+    std::uint32_t seed_;
     Grouping grouping_;
     std::vector<SampleVector> vectors_;       // [block][slot]
     std::vector<std::uint16_t> indices_;      // [block][slot][lane]
