@@ -8,6 +8,7 @@
 #include <CLI/Formatter.hpp>
 #include <exception>
 #include <new>
+#include <sstream>
 
 #include "commands.h"
 #include "interrupt.h"
@@ -23,11 +24,26 @@ std::string usage_line(const CLI::App& program, const std::string& problem) {
     return fmt::format("{}; see {} --help", problem, command);
 }
 
+/// CLI11's words for the few mistakes that are common are not those of a sentence.
 std::string problem_text(const CLI::App& program, const CLI::ParseError& error, int argc, char** argv) {
     if (program.get_subcommands().empty()) {
         return argc < 2 ? "no command is given" : fmt::format("there is no command or option '{}'", argv[1]);
     }
-    return error.what();
+    const std::string words = error.what();
+    if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
+        std::string surplus;
+        for (const std::string& argument : program.get_subcommands().front()->remaining()) {
+            if (surplus.empty() || (argument[0] == '-' && surplus[0] != '-')) surplus = argument;
+        }
+        return fmt::format("{} '{}'", surplus[0] == '-' ? "there is no option" : "there is one argument too many,",
+                           surplus);
+    }
+    if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) {
+        const std::string option = words.substr(0, words.find(':'));
+        return option +
+               (words.find("missing") != std::string::npos ? ": its value is missing" : ": it is given more than once");
+    }
+    return words;
 }
 
 int run_program(int argc, char** argv) {

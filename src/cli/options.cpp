@@ -231,7 +231,7 @@ void add_render_options(CLI::App& command, RenderSettings& settings) {
 }
 
 void complete_settings(RenderSettings& settings) {
-    if (const char* text = std::getenv("PENTAPRISM_THREADS"); text && settings.method.threads == 0) {
+    if (const char* text = std::getenv("PENTAPRISM_THREADS"); text && *text && settings.method.threads == 0) {
         settings.method.threads = static_cast<int>(parse_whole("PENTAPRISM_THREADS", text, 1, 1024));
     }
     cpu_target();  // a wrong PENTAPRISM_ISA is said before any work

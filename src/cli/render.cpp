@@ -168,9 +168,9 @@ int render(RenderCommand& command) {
             print_debug(fmt::format("frame {}: {} {:.1f} ms", frame, stage, ms));
         progress.end_frame(file.string());
     }
-    if (!command.stats.empty() && !stats_for_each_frame) {
+    if (!all_stats.empty() && !stats_for_each_frame) {
         // One frame was asked for: the object itself; several: one object for each frame that was rendered.
-        const bool single = command.frames.size() == 1 && all_stats.size() == 1;
+        const bool single = command.frames.size() == 1;
         write_text_file(command.stats, to_text(single ? all_stats.front() : all_stats));
     }
     return 0;
