@@ -7,12 +7,14 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <memory>
 #include <pentaprism/scene.h>
 #include <span>
 #include <vector>
 
 #include "camera/view.h"
 #include "scene/pose.h"
+#include "scene/texture.h"
 
 namespace pentaprism {
 
@@ -39,6 +41,7 @@ struct Frame {
     std::vector<std::uint32_t> corners;  ///< 3 for each triangle: into `points`, at knot 0
     std::vector<std::uint32_t> part_of;  ///< for each triangle: into `parts`
     Pose middle;                      ///< the scene at mid-shutter, the shading time
+    std::shared_ptr<const Textures> textures;  ///< set by who renders, once for all frames; null: factors alone count
 
     std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(part_of.size()); }
 

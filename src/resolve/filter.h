@@ -1,0 +1,18 @@
+#pragma once
+// Reconstruction filters: separable, h(dx) * h(dy) of the distance from a pixel's centre in pixels (docs:
+// algorithms, 6.6).
+
+#include <pentaprism/settings.h>
+
+namespace pentaprism {
+
+/// 0.5 (box), 1 (tent), 1.5 (gaussian, blackman-harris) pixels.
+double filter_radius(Filter filter);
+
+/// h(d); 0 beyond the radius.
+double filter_weight(Filter filter, double d);
+
+/// How many pixels away a pixel's samples still count: 0 for the box, else 1.
+int filter_reach(Filter filter);
+
+}  // namespace pentaprism
