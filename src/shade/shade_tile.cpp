@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "cover/exact.h"
-#include "frame/local_triangle.h"
+#include "bound/local_triangle.h"
 #include "shade/sample_order.h"
 #include "shade/shaded_triangle.h"
 
