@@ -45,7 +45,7 @@ require_packages() {
 
     local by_hand="apt-get install --no-install-recommends ${missing[*]}"
     if [[ $(id -u) != 0 ]] && ! command -v sudo >/dev/null; then
-        fail "${#missing[@]} packages are missing and only root can install them; as root, run: $by_hand"
+        fail "packages are missing that only root can install; as root, run: $by_hand"
     fi
     mkdir -p build
     local log=build/apt.log
@@ -66,7 +66,8 @@ build_preset() {
     local preset=$1 log=build/$1.log
     shift
     if [[ -z ${CMAKE_CXX_COMPILER_LAUNCHER:-} ]] && command -v ccache >/dev/null; then
-        export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+        # The second pair lets a fresh checkout elsewhere use what an earlier one compiled.
+        export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$project CCACHE_NOHASHDIR=1
     fi
     mkdir -p build
     : >"$log"

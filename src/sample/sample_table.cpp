@@ -111,6 +111,16 @@ int stratum_of(Grouping grouping, int spp, std::uint32_t base_u, std::uint32_t b
 
 constexpr int kMaxStrata = 64;
 
+int stratum_count(Grouping grouping, int spp) {
+    switch (grouping) {
+        case Grouping::kStill: return 1;
+        case Grouping::kMotion: return std::min(spp, kMaxStrata);
+        case Grouping::kDefocus: return 16;
+        case Grouping::kBoth: return kMaxStrata;
+    }
+    return kMaxStrata;
+}
+
 constexpr Domain kEmptyDomain = {2, -2, 1e30f, -1e30f, 2, -2};
 
 void extend(Domain& domain, const Domain& other) {
@@ -162,9 +172,9 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
         }
     });
 
-    domains_.assign(kMaxStrata, kEmptyDomain);
+    domains_.assign(stratum_count(grouping, spp), kEmptyDomain);
     for (const auto& block : domains)
-        for (int s = 0; s < kMaxStrata; ++s) extend(domains_[s], block[s]);
+        for (std::size_t s = 0; s < domains_.size(); ++s) extend(domains_[s], block[s]);
 
     const int cells = period_ / kCellSize;
     strata_.resize(static_cast<std::size_t>(cells) * cells);
