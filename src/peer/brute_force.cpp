@@ -9,7 +9,7 @@
 
 #include "base/parallel.h"
 #include "cover/exact.h"
-#include "frame/local_triangle.h"
+#include "bound/local_triangle.h"
 #include "frame/opacity.h"
 
 namespace pentaprism {
