@@ -1,17 +1,20 @@
 #pragma once
 // Picture files: written row by row as they are rendered, under the name FILE.part until they are whole.
 
+#include <pentaprism/render.h>
+
 #include <filesystem>
 #include <memory>
-#include <pentaprism/render.h>
 #include <string>
+#include <string_view>
 
 namespace pentaprism {
 
 /// What goes into the header of an EXR file beside the FrameInfo.
 struct FileMetadata {
-    std::string settings_json;  ///< the full settings, with seed and scene hash; no dates, no paths
-    double exposure_seconds = 0.0;
+    std::string settings_json;            ///< the full settings, with seed and scene hash; no dates, no paths
+    double exposure_seconds = 0.0;        ///< 0: what FrameInfo says of the shutter
+    std::string software = "pentaprism";  ///< name and version of the program
 };
 
 /// A sink that writes `.exr` (R G B A half, Z float, linear) or `.png` (8-bit sRGB, tone-mapped). finish() syncs and
@@ -24,7 +27,19 @@ class PictureWriter : public RowSink {
 std::unique_ptr<PictureWriter> make_picture_writer(const std::filesystem::path& file, const ImageSettings& image,
                                                    const FileMetadata& metadata);
 
-/// Reads a `.png` (to linear) or `.exr` with channels R G B and, if present, A and Z. Throws Error(kScene).
+/// True for a name that make_picture_writer() accepts.
+bool is_picture_name(const std::filesystem::path& file);
+
+/// Threads that compress EXR pictures beside the caller's, for the whole process; 0 (the default): none. Never changes
+/// a byte.
+void set_picture_threads(int threads);
+
+/// Writes a text as pictures are written: whole or not at all. Throws Error(kOutput).
+void write_text_file(const std::filesystem::path& file, std::string_view text);
+
+/// Reads a `.png` (to linear) or `.exr` with channels R G B and, if present, A and Z (else alpha is 1 and Z
+/// +infinity). Width and height are those of the part that was rendered; Picture::info says where it lies in the whole,
+/// and what the header tells of shutter and lens. Throws Error(kScene).
 Picture read_picture(const std::filesystem::path& file);
 
 }  // namespace pentaprism

@@ -24,7 +24,7 @@ struct ImageSettings {
 
 /// An unset value comes from the scene's camera (LensInfo), else from the default in the comment.
 struct CameraSettings {
-    std::string camera;  ///< name or index; empty: the first, else one that frames the scene
+    std::string camera;                     ///< name or index; empty: the first, else one that frames the scene
     std::optional<double> focal_length_mm;  ///< changes the field of view: tan(fovx / 2) = sensor / (2 focal length)
     std::optional<double> sensor_width_mm;  ///< 36
     bool defocus = true;                    ///< false: a pinhole whatever else is said
@@ -39,10 +39,10 @@ struct CameraSettings {
 };
 
 struct ShutterSettings {
-    bool motion_blur = true;        ///< false: everything stands still at mid-shutter
-    std::optional<double> shutter;  ///< open time in frames; 0.5
+    bool motion_blur = true;                              ///< false: everything stands still at mid-shutter
+    std::optional<double> shutter;                        ///< open time in frames; 0.5
     ShutterPosition position = ShutterPosition::kCenter;  ///< where the frame's time lies in the open time
-    int motion_segments = 0;        ///< straight pieces of each path; 0: as many as keep the error below 0.1 pixel
+    int motion_segments = 0;  ///< straight pieces of each path; 0: as many as keep the error below 0.1 pixel
 };
 
 struct AnimationSettings {
@@ -65,5 +65,9 @@ struct RenderSettings {
     AnimationSettings animation;
     MethodSettings method;
 };
+
+/// Throws Error(kUsage) for the first setting whose value has no meaning, by the name of its option: one that is not
+/// finite, out of its range, or at odds with another. What only the scene can tell (a camera's name) is not looked at.
+void validate(const RenderSettings& settings);
 
 }  // namespace pentaprism

@@ -1,0 +1,198 @@
+// What RenderSettings may hold, and the settings as JSON for a picture's header.
+
+#include <fmt/format.h>
+#include <pentaprism/error.h>
+#include <pentaprism/metadata.h>
+#include <pentaprism/settings.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace pentaprism {
+namespace {
+
+[[noreturn]] void refuse(const std::string& message) {
+    throw Error(ErrorKind::kUsage, message);
+}
+
+void check_whole(const char* option, int value, int least, int most) {
+    if (value < least || value > most) refuse(fmt::format("{}: {} is not from {} to {}", option, value, least, most));
+}
+
+void check_finite(const char* option, double value) {
+    if (!std::isfinite(value)) refuse(fmt::format("{}: {} is not a finite number", option, value));
+}
+
+void check_above(const char* option, const std::optional<double>& value, double bound) {
+    if (!value) return;
+    check_finite(option, *value);
+    if (*value <= bound) refuse(fmt::format("{}: {} is not above {}", option, *value, bound));
+}
+
+void check_from(const char* option, const std::optional<double>& value, double least, double most) {
+    if (!value) return;
+    check_finite(option, *value);
+    if (*value < least || *value > most)
+        refuse(fmt::format("{}: {} is not from {} to {}", option, *value, least, most));
+}
+
+void check(const ImageSettings& image) {
+    check_whole("--resolution", image.width, 1, 16384);
+    check_whole("--resolution", image.height, 1, 16384);
+    check_whole("--spp", image.spp, 1, 4096);
+    check_from("--exposure", image.exposure, -100.0, 100.0);
+    if (image.background) {
+        for (const float value : *image.background) check_from("--background", value, 0.0, 65504.0);
+    }
+    if (!image.crop) return;
+    const auto [x0, x1, y0, y1] = *image.crop;
+    const std::string crop = fmt::format("--crop {},{},{},{}", x0, x1, y0, y1);
+    if (x0 >= x1 || y0 >= y1) refuse(crop + ": nothing is left; X0 < X1 and Y0 < Y1 are wanted");
+    if (x0 < 0 || y0 < 0 || x1 > image.width || y1 > image.height) {
+        refuse(fmt::format("{}: it reaches out of the {}x{} picture", crop, image.width, image.height));
+    }
+}
+
+void check(const CameraSettings& camera, const ImageSettings& image) {
+    constexpr double kHuge = 1e9;
+    check_above("--focal-length", camera.focal_length_mm, 0.0);
+    check_above("--sensor-width", camera.sensor_width_mm, 0.0);
+    check_above("--fstop", camera.fstop, 0.0);
+    check_from("--lens-radius", camera.lens_radius, 0.0, kHuge);
+    check_above("--focus-distance", camera.focus_distance, 0.0);
+    check_from("--aperture-rotation", camera.aperture_rotation_deg, -kHuge, kHuge);
+    check_above("--aperture-ratio", camera.aperture_ratio, 0.0);
+    if (camera.fstop && camera.lens_radius)
+        refuse("--fstop and --lens-radius say the same in two ways; give one of them");
+    if (int{camera.focus_distance.has_value()} + int{!camera.focus_object.empty()} +
+            int{camera.focus_pixel.has_value()} >
+        1) {
+        refuse("--focus-distance, --focus-object and --focus-pixel exclude each other; give one of them");
+    }
+    if (camera.aperture_blades && (*camera.aperture_blades < 0 || *camera.aperture_blades == 1 ||
+                                   *camera.aperture_blades == 2 || *camera.aperture_blades > 64)) {
+        refuse(fmt::format("--aperture-blades: {} is neither 0 (a disk) nor from 3 to 64", *camera.aperture_blades));
+    }
+    if (camera.focus_pixel) {
+        const auto [x, y] = *camera.focus_pixel;
+        check_finite("--focus-pixel", x);
+        check_finite("--focus-pixel", y);
+        if (x < 0.0 || y < 0.0 || x >= image.width || y >= image.height) {
+            refuse(
+                fmt::format("--focus-pixel {},{}: it lies outside the {}x{} picture", x, y, image.width, image.height));
+        }
+    }
+}
+
+void check(const ShutterSettings& shutter) {
+    check_from("--shutter", shutter.shutter, 0.0, 1e6);
+    check_whole("--motion-segments", shutter.motion_segments, 0, 64);
+}
+
+void check(const AnimationSettings& animation) {
+    check_above("--fps", animation.fps, 0.0);
+    check_from("--fps", animation.fps, 0.0, 1e6);
+}
+
+void check(const MethodSettings& method) {
+    check_whole("--threads", method.threads, 0, 1024);
+    if (method.tile_size != 8 && method.tile_size != 16 && method.tile_size != 32) {
+        refuse(fmt::format("tile size: {} is not 8, 16 or 32", method.tile_size));
+    }
+}
+
+const char* name_of(Filter filter) {
+    switch (filter) {
+        case Filter::kBox:
+            return "box";
+        case Filter::kTent:
+            return "tent";
+        case Filter::kGaussian:
+            return "gaussian";
+        case Filter::kBlackmanHarris:
+            break;
+    }
+    return "blackman-harris";
+}
+
+const char* name_of(ToneMap curve) {
+    switch (curve) {
+        case ToneMap::kNone:
+            return "none";
+        case ToneMap::kFilmic:
+            return "filmic";
+        case ToneMap::kAces:
+            break;
+    }
+    return "aces";
+}
+
+const char* name_of(ShutterPosition position) {
+    switch (position) {
+        case ShutterPosition::kStart:
+            return "start";
+        case ShutterPosition::kEnd:
+            return "end";
+        case ShutterPosition::kCenter:
+            break;
+    }
+    return "center";
+}
+
+using Json = nlohmann::ordered_json;
+
+// Options that were not given are left out: what they come to is in the header's own attributes.
+template <class T>
+void put(Json& json, const char* key, const std::optional<T>& value) {
+    if (value) json[key] = *value;
+}
+void put(Json& json, const char* key, const std::string& value) {
+    if (!value.empty()) json[key] = value;
+}
+
+}  // namespace
+
+void validate(const RenderSettings& settings) {
+    check(settings.image);
+    check(settings.camera, settings.image);
+    check(settings.shutter);
+    check(settings.animation);
+    check(settings.method);
+}
+
+std::string settings_json(const RenderSettings& settings, const std::string& scene_name, const std::string& hash) {
+    const auto& [image, camera, shutter, animation, method] = settings;
+    Json json;
+    json["scene"] = scene_name;
+    json["scene_hash"] = hash;
+    json["resolution"] = {image.width, image.height};
+    json["spp"] = image.spp;
+    json["filter"] = name_of(image.filter);
+    put(json, "crop", image.crop);
+    json["exposure"] = image.exposure;
+    json["tonemap"] = name_of(image.tonemap);
+    put(json, "background", image.background);
+    put(json, "camera", camera.camera);
+    put(json, "focal_length_mm", camera.focal_length_mm);
+    put(json, "sensor_width_mm", camera.sensor_width_mm);
+    json["defocus"] = camera.defocus;
+    put(json, "fstop", camera.fstop);
+    put(json, "lens_radius", camera.lens_radius);
+    put(json, "focus_distance", camera.focus_distance);
+    put(json, "focus_object", camera.focus_object);
+    put(json, "focus_pixel", camera.focus_pixel);
+    put(json, "aperture_blades", camera.aperture_blades);
+    put(json, "aperture_rotation_deg", camera.aperture_rotation_deg);
+    put(json, "aperture_ratio", camera.aperture_ratio);
+    json["motion_blur"] = shutter.motion_blur;
+    put(json, "shutter", shutter.shutter);
+    json["shutter_position"] = name_of(shutter.position);
+    json["motion_segments"] = shutter.motion_segments;
+    json["fps"] = animation.fps;
+    json["animation"] = animation.animation;
+    json["shading"] = method.shading;
+    json["seed"] = method.seed;
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace pentaprism

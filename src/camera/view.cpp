@@ -1,0 +1,189 @@
+#include "camera/view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/matrix_inverse.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+#include <pentaprism/error.h>
+
+#include "camera/look.h"
+
+namespace pentaprism {
+namespace {
+
+// The node that carries the camera asked for, by camera index, camera name or node name.
+Index find_camera_node(const Scene& scene, const std::string& wanted) {
+    auto node_with_camera = [&](auto accept) {
+        for (Index n = 0; n < static_cast<Index>(scene.nodes.size()); ++n)
+            if (scene.nodes[n].visible && scene.nodes[n].camera != kNone && accept(scene.nodes[n])) return n;
+        return kNone;
+    };
+    if (wanted.empty()) {
+        for (Index c = 0; c < static_cast<Index>(scene.cameras.size()); ++c)
+            if (const Index n = node_with_camera([&](const Node& node) { return node.camera == c; }); n != kNone) return n;
+        return kNone;
+    }
+    Index found = node_with_camera([&](const Node& node) {
+        return node.name == wanted || scene.cameras[node.camera].name == wanted;
+    });
+    if (found == kNone && wanted.size() < 9 && std::all_of(wanted.begin(), wanted.end(), [](char c) { return c >= '0' && c <= '9'; })) {
+        const Index index = std::stoi(wanted);
+        found = node_with_camera([&](const Node& node) { return node.camera == index; });
+    }
+    if (found == kNone) {
+        std::string names;
+        for (const Node& node : scene.nodes)
+            if (node.visible && node.camera != kNone)
+                names += (names.empty() ? "" : ", ") + (node.name.empty() ? scene.cameras[node.camera].name : node.name);
+        throw Error(ErrorKind::kUsage, scene.name + ": no camera '" + wanted + "'" +
+                                           (names.empty() ? "; the scene has none" : "; there are: " + names));
+    }
+    return found;
+}
+
+// A camera that sees everything that the scene shows at any of a few times of its animation.
+void frame_scene(const Scene& scene, std::span<const Index> animations, View& view) {
+    double duration = 0.0;
+    for (const Index a : animations) duration = std::max(duration, scene.animations[a].duration);
+    Box3 box;
+    for (int i = 0; i <= 4; ++i) box.extend(bounding_box(scene, evaluate(scene, animations, duration * i / 4), kNone));
+    if (box.empty()) box.extend(Box3{glm::dvec3(-1.0), glm::dvec3(1.0)});
+    const double radius = std::max(1e-6, 0.5 * glm::length(box.upper - box.lower));
+    constexpr double half_angle = 0.35;
+    const double shorter_side = std::min(1.0, static_cast<double>(view.width) / view.height);
+    const double distance = radius / std::sin(std::atan(std::tan(half_angle) * shorter_side));
+    const glm::dvec3 direction = glm::normalize(glm::dvec3(0.45, 0.3, 1.0));
+    view.fixed_world_to_camera = glm::lookAt(box.centre() + distance * direction, box.centre(), glm::dvec3(0.0, 1.0, 0.0));
+    view.fx = view.fy = 0.5 * view.height / std::tan(half_angle);
+    view.depth_near = std::max(distance * 1e-3, distance - 1.5 * radius);
+    view.depth_far = distance + 4.0 * radius;
+    view.camera_name = "framing";
+}
+
+void apply_projection(const Camera& camera, View& view) {
+    view.perspective = camera.perspective;
+    view.depth_near = camera.znear;
+    view.depth_far = std::isfinite(camera.zfar) ? camera.zfar : 1e30;
+    if (camera.perspective) {
+        view.fx = view.fy = 0.5 * view.height / std::tan(0.5 * camera.yfov);
+    } else {
+        // Pixels are square: the picture's height shows 2 ymag, whatever the aspect the file has in mind.
+        view.fx = view.fy = 0.5 * view.height / camera.ymag;
+    }
+}
+
+// Middle of what is seen: the surface at the middle of the picture, else the middle of the scene.
+double default_focus(const Scene& scene, const Pose& pose, const View& view) {
+    const double depth = depth_at_pixel(scene, pose, view, 0.5 * view.width, 0.5 * view.height);
+    if (std::isfinite(depth)) return depth;
+    const Box3 box = bounding_box(scene, pose, kNone);
+    if (box.empty()) return 1.0;
+    const double centre = -(world_to_camera(view, pose) * glm::dvec4(box.centre(), 1.0)).z;
+    return std::max(centre, 2.0 * view.depth_near);
+}
+
+double focus_distance(const Scene& scene, const CameraSettings& settings, const LensInfo& info, const Pose& pose,
+                      const View& view) {
+    if (settings.focus_distance) return *settings.focus_distance;
+    if (!settings.focus_object.empty()) {
+        const Index node = find_node(scene, settings.focus_object);
+        if (node == kNone) throw Error(ErrorKind::kUsage, scene.name + ": no node '" + settings.focus_object + "' to focus on");
+        const Box3 box = bounding_box(scene, pose, node);
+        const glm::dvec3 centre = box.empty() ? glm::dvec3(pose.world[node][3]) : box.centre();
+        const double depth = -(world_to_camera(view, pose) * glm::dvec4(centre, 1.0)).z;
+        if (!(depth > 0.0))
+            throw Error(ErrorKind::kUsage, scene.name + ": node '" + settings.focus_object + "' is behind the camera, it cannot be in focus");
+        return depth;
+    }
+    if (settings.focus_pixel) {
+        const auto [x, y] = *settings.focus_pixel;
+        const double depth = depth_at_pixel(scene, pose, view, x, y);
+        if (!std::isfinite(depth))
+            throw Error(ErrorKind::kUsage, scene.name + ": nothing is seen at --focus-pixel; give a pixel that shows a surface");
+        return depth;
+    }
+    if (info.focus_distance) return *info.focus_distance;
+    return default_focus(scene, pose, view);
+}
+
+void resolve_lens(const Scene& scene, const CameraSettings& settings, const LensInfo& info, double sensor_width_mm,
+                  const Pose& pose, View& view) {
+    Lens& lens = view.lens;
+    view.focal_length_mm = view.perspective ? view.fx * sensor_width_mm / view.width : 0.0;
+    lens.blades = settings.aperture_blades.value_or(info.aperture_blades.value_or(0));
+    lens.rotation_deg = settings.aperture_rotation_deg.value_or(info.aperture_rotation_deg.value_or(0.0));
+    lens.ratio = settings.aperture_ratio.value_or(info.aperture_ratio.value_or(1.0));
+    if (!settings.defocus) return;
+    if (settings.lens_radius) {
+        lens.radius = *settings.lens_radius;
+    } else if (settings.fstop || (info.fstop && view.perspective)) {
+        if (!view.perspective)
+            throw Error(ErrorKind::kUsage, "an orthographic camera has no focal length, so no f-stop: give --lens-radius");
+        lens.fstop = settings.fstop ? *settings.fstop : *info.fstop;
+        lens.radius = view.focal_length_mm * 1e-3 / (2.0 * lens.fstop);
+    }
+    if (lens.radius == 0.0) return;
+    if (lens.fstop == 0.0 && view.focal_length_mm > 0.0) lens.fstop = view.focal_length_mm * 1e-3 / (2.0 * lens.radius);
+    lens.focus_distance = focus_distance(scene, settings, info, pose, view);
+    lens.a = -lens.radius * view.fx;
+    lens.b = lens.radius * view.fx / lens.focus_distance;
+}
+
+Shutter resolve_shutter(const RenderSettings& settings, const LensInfo& info, double frame) {
+    const double fps = settings.animation.fps;
+    const double open_frames = settings.shutter.shutter.value_or(info.shutter.value_or(0.5));
+    double start = frame;
+    if (settings.shutter.position == ShutterPosition::kCenter) start -= 0.5 * open_frames;
+    if (settings.shutter.position == ShutterPosition::kEnd) start -= open_frames;
+    Shutter shutter{start / fps, (start + open_frames) / fps};
+    if (!settings.shutter.motion_blur) shutter.open = shutter.close = shutter.middle();
+    return shutter;
+}
+
+}  // namespace
+
+glm::dmat4 world_to_camera(const View& view, const Pose& pose) {
+    if (view.camera_node == kNone) return view.fixed_world_to_camera;
+    // A camera ignores its node's scale (glTF 2.0, 3.10): only position and directions count.
+    const glm::dmat4& world = pose.world[view.camera_node];
+    glm::dmat4 rigid(1.0);
+    const glm::dvec3 back = glm::normalize(glm::dvec3(world[2]));
+    const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3(world[1]), back));
+    rigid[0] = glm::dvec4(right, 0.0);
+    rigid[1] = glm::dvec4(glm::cross(back, right), 0.0);
+    rigid[2] = glm::dvec4(back, 0.0);
+    rigid[3] = world[3];
+    return glm::affineInverse(rigid);
+}
+
+glm::dvec4 to_raster_clip(const View& view, const glm::dvec3& p) {
+    const double depth = -p.z;
+    return {view.fx * p.x, view.fy * p.y, view.perspective ? depth : 1.0, depth};
+}
+
+View make_view(const Scene& scene, const RenderSettings& settings, double frame) {
+    View view;
+    view.width = settings.image.width;
+    view.height = settings.image.height;
+    const std::vector<Index> animations = choose_animations(scene, settings.animation.animation);
+    view.camera_node = find_camera_node(scene, settings.camera.camera);
+    LensInfo info;
+    if (view.camera_node == kNone) {
+        frame_scene(scene, animations, view);
+    } else {
+        const Camera& camera = scene.cameras[scene.nodes[view.camera_node].camera];
+        apply_projection(camera, view);
+        info = camera.lens;
+        const std::string& node_name = scene.nodes[view.camera_node].name;
+        view.camera_name = node_name.empty() ? camera.name : node_name;
+    }
+    const double sensor_width_mm = settings.camera.sensor_width_mm.value_or(info.sensor_width_mm.value_or(36.0));
+    if (settings.camera.focal_length_mm && view.perspective)
+        view.fx = view.fy = *settings.camera.focal_length_mm * view.width / sensor_width_mm;
+    view.shutter = resolve_shutter(settings, info, frame);
+    resolve_lens(scene, settings.camera, info, sensor_width_mm, evaluate(scene, animations, view.shutter.middle()), view);
+    return view;
+}
+
+}  // namespace pentaprism

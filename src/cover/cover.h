@@ -1,0 +1,38 @@
+#pragma once
+// Which samples of a tile are covered, by what, how far: fills the tile's Hits. Two implementations with the same result, bit
+// for bit: one sample at a time with any culling test (the readable truth), and vectors of sixteen samples.
+
+#include <cstdint>
+#include <span>
+
+#include "bin/bins.h"
+#include "cover/hits.h"
+#include "cull/cull_test.h"
+#include "sample/sample_table.h"
+
+namespace pentaprism {
+
+struct TileWork {
+    const Frame& frame;
+    const SampleTable& samples;
+    std::span<const BinnedTriangle> triangles;   ///< of the picture
+    std::span<const std::uint32_t> list;         ///< those of this tile, in submission order
+    Tile tile;
+};
+
+/// What a tile cost. `tested`: exact 5D tests; `covered`: those that accepted (before depth and alpha).
+struct CoverCounts {
+    std::int64_t tested = 0, covered = 0;
+    void add(const CoverCounts& other) {
+        tested += other.tested;
+        covered += other.covered;
+    }
+};
+
+/// `hits` must be reset. Walks pixel by pixel: the culling test's footprint is one pixel with all of lens and shutter.
+void cover_with_test(const TileWork& work, const CullTest& test, Hits& hits, CoverCounts& counts);
+
+/// The fast path of `--culling auto`, on the CPU target in use (base/cpu.h). Equals cover_with_test with any test.
+void cover_vectors(const TileWork& work, Hits& hits, CoverCounts& counts);
+
+}  // namespace pentaprism

@@ -1,0 +1,434 @@
+// The fast path of the coverage stage: sixteen samples at a time, the same decisions as cover/exact.cpp bit for bit.
+//
+// For each triangle of the tile, in submission order:
+//   1. interval bounds of the triangle for each stratum of (u, v, t), strata in lanes (docs/develop/algorithms.md 4.11), give
+//      the 4x4-pixel blocks in which the stratum's samples can hit; triangles that reach the camera plane take the improved
+//      dual-space test on each block instead;
+//   2. (block, slot) pairs that survive, and whose farthest depth so far is beyond the triangle, form a work list;
+//   3. a pass over the list does the edge functions and keeps the vectors that hit something, without branching on it;
+//   4. a pass over those does depth, opacity and writes.
+// This file is compiled once for each CPU target; it holds the kernels and nothing else.
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "cover/cover_vectors.cpp"
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4)
+#include <hwy/foreach_target.h>
+// foreach_target.h must come first.
+#include <hwy/highway.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "base/cpu.h"
+#include "cover/cover.h"
+#include "cover/exact.h"
+#include "frame/opacity.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pentaprism {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using F = hn::CappedTag<float, kLanes>;
+using Vec = hn::Vec<F>;
+using Mask = hn::Mask<F>;
+using I = hn::RebindToSigned<F>;
+using U = hn::RebindToUnsigned<F>;
+constexpr float kUnitRoundoff = 1.0f / 16777216.0f;
+
+// The tile's state that lives longer than a triangle.
+struct TileState {
+    const TileWork& work;
+    Hits& hits;
+    CoverCounts& counts;
+    CellCentre centre;
+    std::span<const SampleTable::Stratum> strata;
+    std::span<const Domain> domains;
+    std::uint64_t tile_blocks;                       // blocks of the cell that belong to the tile
+    std::vector<const SampleVector*> block_samples;  // [block]
+    std::vector<float> farthest;                     // [block][slot]: largest depth stored so far
+    std::vector<std::uint32_t> jobs, survivors;      // block * slots + slot
+    // Domains of the strata, structure of arrays, padded to whole vectors with empty ones.
+    HWY_ALIGN float u0[64], u1[64], v0[64], v1[64], t0[64], t1[64];
+    int stratum_count = 0;
+};
+
+// Where the three vertices are seen from sixteen samples (docs/develop/algorithms.md 1.5).
+struct Deltas {
+    Vec x[3], y[3], w[3], z[3];
+    Mask in_segment;
+};
+
+template <bool kMotion, bool kDefocus>
+HWY_INLINE Deltas deltas(F f, const LocalTriangle& T, const SampleVector& s, int lane, float block_x, float block_y) {
+    Deltas D;
+    const Vec hx = hn::Add(hn::Load(f, s.x + lane), hn::Set(f, block_x));
+    const Vec hy = hn::Add(hn::Load(f, s.y + lane), hn::Set(f, block_y));
+    Vec tau = hn::Zero(f);
+    if constexpr (kMotion) {
+        tau = hn::MulAdd(hn::Load(f, s.t + lane), hn::Set(f, T.segments), hn::Set(f, -T.segment));
+        D.in_segment = hn::And(hn::Ge(tau, hn::Zero(f)), hn::Lt(tau, hn::Set(f, 1.0f)));
+    } else {
+        D.in_segment = hn::FirstN(f, kLanes);
+    }
+    for (int i = 0; i < 3; ++i) {
+        Vec x = hn::Set(f, T.qx[i]), y = hn::Set(f, T.qy[i]), w = hn::Set(f, T.qw[i]), c = hn::Set(f, T.qc[i]);
+        if constexpr (kMotion) {
+            x = hn::MulAdd(tau, hn::Set(f, T.dx[i]), x);
+            y = hn::MulAdd(tau, hn::Set(f, T.dy[i]), y);
+            w = hn::MulAdd(tau, hn::Set(f, T.dw[i]), w);
+            if constexpr (kDefocus) c = hn::MulAdd(tau, hn::Set(f, T.dc[i]), c);
+        }
+        if constexpr (kDefocus) {
+            x = hn::MulAdd(hn::Load(f, s.u + lane), c, x);
+            y = hn::MulAdd(hn::Load(f, s.v + lane), c, y);
+        }
+        D.x[i] = hn::NegMulAdd(hx, w, x);
+        D.y[i] = hn::NegMulAdd(hy, w, y);
+        D.w[i] = w;
+        D.z[i] = T.orthographic ? hn::MulAdd(tau, hn::Set(f, T.dz[i]), hn::Set(f, T.qz[i])) : w;
+    }
+    return D;
+}
+
+HWY_INLINE Vec edge(const Deltas& D, int i, int j) { return hn::Sub(hn::Mul(D.x[i], D.y[j]), hn::Mul(D.x[j], D.y[i])); }
+
+struct Edges {
+    Vec e[3];
+};
+HWY_INLINE Edges edges(const Deltas& D) { return {{edge(D, 1, 2), edge(D, 2, 0), edge(D, 0, 1)}}; }
+
+// Lanes that are inside for certain, and lanes with a sample exactly on an edge, which the scalar test decides.
+struct Inside {
+    Mask certain, tied;
+};
+HWY_INLINE Inside inside(F f, const LocalTriangle& T, const Edges& E) {
+    const Vec zero = hn::Zero(f);
+    const Vec lowest = hn::Min(hn::Min(E.e[0], E.e[1]), E.e[2]), highest = hn::Max(hn::Max(E.e[0], E.e[1]), E.e[2]);
+    const Mask two_sided = T.two_sided ? hn::FirstN(f, kLanes) : hn::FirstN(f, 0);
+    const Mask back = hn::And(hn::Lt(highest, zero), two_sided), back_or_tied = hn::And(hn::Le(highest, zero), two_sided);
+    const Mask certain = hn::Or(hn::Gt(lowest, zero), back);
+    return {certain, hn::AndNot(certain, hn::Or(hn::Ge(lowest, zero), back_or_tied))};
+}
+
+HWY_INLINE float block_x(int block) { return static_cast<float>(block % kCellBlocks * kBlockSize - kCellSize / 2); }
+HWY_INLINE float block_y(int block) { return static_cast<float>(kCellSize / 2 - block / kCellBlocks * kBlockSize); }
+
+// Pass 1: which vectors of the work list have a sample inside all edges.
+template <bool kMotion, bool kDefocus>
+std::size_t find_survivors(TileState& state, const LocalTriangle& T, std::size_t job_count) {
+    const F f;
+    const int slots = state.work.samples.slots();
+    std::size_t count = 0;
+    for (std::size_t j = 0; j < job_count; ++j) {
+        const std::uint32_t job = state.jobs[j];
+        const int block = static_cast<int>(job) / slots, slot = static_cast<int>(job) % slots;
+        const SampleVector& s = state.block_samples[block][slot];
+        bool any = false;
+        for (int lane = 0; lane < kLanes; lane += static_cast<int>(hn::Lanes(f))) {
+            const Deltas D = deltas<kMotion, kDefocus>(f, T, s, lane, block_x(block), block_y(block));
+            const Inside in = inside(f, T, edges(D));
+            any |= !hn::AllFalse(f, hn::And(hn::Or(in.certain, in.tied), D.in_segment));
+        }
+        state.survivors[count] = job;
+        count += any;
+    }
+    return count;
+}
+
+HWY_INLINE Mask straddles_zero(F f, const Vec v[3]) {
+    const Vec zero = hn::Zero(f);
+    return hn::And(hn::Le(hn::Min(hn::Min(v[0], v[1]), v[2]), zero), hn::Ge(hn::Max(hn::Max(v[0], v[1]), v[2]), zero));
+}
+
+// What the scalar test says of the lanes in `tied`; returns those it accepts, with their depth.
+HWY_NOINLINE Mask decide_ties(F f, const TileState& state, const LocalTriangle& T, const SampleVector& s, int lane, int block,
+                              Mask tied, Vec& depth) {
+    HWY_ALIGN std::int32_t ask[kLanes];
+    HWY_ALIGN float depths[kLanes];
+    const I i;
+    hn::Store(hn::VecFromMask(i, hn::RebindMask(i, tied)), i, ask);
+    hn::Store(depth, f, depths);
+    for (std::size_t k = 0; k < hn::Lanes(f); ++k) {
+        if (ask[k] == 0) continue;
+        const LocalSample sample{s.x[lane + k] + block_x(block), s.y[lane + k] + block_y(block), s.u[lane + k], s.v[lane + k], s.t[lane + k]};
+        const SampleHit hit = cover_sample(T, sample, state.centre);
+        ask[k] = hit.hit ? -1 : 0;
+        if (hit.hit) depths[k] = hit.depth;
+    }
+    depth = hn::Load(f, depths);
+    return hn::RebindMask(f, hn::Lt(hn::Load(i, ask), hn::Zero(i)));
+}
+
+// The lanes whose surface is really there: alpha masks and stochastic transparency.
+HWY_NOINLINE Mask decide_opacity(F f, const TileState& state, const LocalTriangle& T, const Edges& E, Vec sum, int lane, int block,
+                                 int slot, Mask hit) {
+    HWY_ALIGN std::int32_t ask[kLanes];
+    HWY_ALIGN float b[3][kLanes];
+    const I i;
+    hn::Store(hn::VecFromMask(i, hn::RebindMask(i, hit)), i, ask);
+    for (int k = 0; k < 3; ++k) hn::Store(hn::Div(E.e[k], sum), f, b[k]);
+    const Tile& tile = state.work.tile;
+    const int bx = tile.cell_x() * kCellBlocks + block % kCellBlocks, by = tile.cell_y() * kCellBlocks + block / kCellBlocks;
+    const auto indices = state.work.samples.indices(bx, by);
+    for (int k = 0; k < static_cast<int>(hn::Lanes(f)); ++k) {
+        if (ask[k] == 0) continue;
+        const float barycentrics[3] = {b[0][k], b[1][k], b[2][k]};
+        const int px = bx * kBlockSize + (lane + k) % kBlockSize, py = by * kBlockSize + (lane + k) / kBlockSize;
+        if (!is_opaque_at(state.work.frame, T.triangle, barycentrics, px, py, indices[slot * kLanes + lane + k],
+                          state.work.samples.spp()))
+            ask[k] = 0;
+    }
+    return hn::RebindMask(f, hn::Lt(hn::Load(i, ask), hn::Zero(i)));
+}
+
+// Pass 2: depth, opacity and writes of the vectors that hit.
+template <bool kMotion, bool kDefocus>
+void write_hits(TileState& state, const LocalTriangle& T, std::size_t count) {
+    const F f;
+    const U u;
+    const int slots = state.work.samples.slots();
+    for (std::size_t j = 0; j < count; ++j) {
+        const std::uint32_t job = state.survivors[j];
+        const int block = static_cast<int>(job) / slots, slot = static_cast<int>(job) % slots;
+        const SampleVector& s = state.block_samples[block][slot];
+        float* depths = &state.hits.depth[std::size_t{job} * kLanes];
+        std::uint32_t* triangles = &state.hits.triangle[std::size_t{job} * kLanes];
+        Vec farthest = hn::Zero(f);
+        for (int lane = 0; lane < kLanes; lane += static_cast<int>(hn::Lanes(f))) {
+            const Deltas D = deltas<kMotion, kDefocus>(f, T, s, lane, block_x(block), block_y(block));
+            const Edges E = edges(D);
+            const Inside in = inside(f, T, E);
+            Mask hit = hn::And(hn::And(in.certain, D.in_segment), hn::And(straddles_zero(f, D.x), straddles_zero(f, D.y)));
+            if (T.behind) {
+                const Vec gx = hn::Add(hn::Set(f, state.centre.x), hn::Add(hn::Load(f, s.x + lane), hn::Set(f, block_x(block))));
+                const Vec gy = hn::Add(hn::Set(f, state.centre.y), hn::Add(hn::Load(f, s.y + lane), hn::Set(f, block_y(block))));
+                hit = hn::And(hit, hn::And(hn::And(hn::Ge(gx, hn::Set(f, T.box[0])), hn::Le(gx, hn::Set(f, T.box[1]))),
+                                           hn::And(hn::Ge(gy, hn::Set(f, T.box[2])), hn::Le(gy, hn::Set(f, T.box[3])))));
+            }
+            const Vec sum = hn::Add(hn::Add(E.e[0], E.e[1]), E.e[2]);
+            Vec depth = hn::Add(hn::Add(hn::Mul(E.e[0], D.z[0]), hn::Mul(E.e[1], D.z[1])), hn::Mul(E.e[2], D.z[2]));
+            depth = hn::Div(depth, sum);
+            depth = hn::Min(hn::Max(depth, hn::Min(hn::Min(D.z[0], D.z[1]), D.z[2])), hn::Max(hn::Max(D.z[0], D.z[1]), D.z[2]));
+            hit = hn::And(hit, hn::And(hn::Ne(sum, hn::Zero(f)),
+                                       hn::And(hn::Ge(depth, hn::Set(f, T.z_near)), hn::Le(depth, hn::Set(f, T.z_far)))));
+            const Mask tied = hn::And(in.tied, D.in_segment);
+            if (HWY_UNLIKELY(!hn::AllFalse(f, tied))) hit = hn::Or(hit, decide_ties(f, state, T, s, lane, block, tied, depth));
+            state.counts.covered += static_cast<std::int64_t>(hn::CountTrue(f, hit));
+            const Vec stored = hn::Load(f, depths + lane);
+            hit = hn::And(hit, hn::Lt(depth, stored));
+            if (T.alpha_tested && !hn::AllFalse(f, hit)) hit = decide_opacity(f, state, T, E, sum, lane, block, slot, hit);
+            const Vec nearest = hn::IfThenElse(hit, depth, stored);
+            hn::Store(nearest, f, depths + lane);
+            hn::Store(hn::IfThenElse(hn::RebindMask(u, hit), hn::Set(u, T.triangle), hn::Load(u, triangles + lane)), u, triangles + lane);
+            farthest = hn::Max(farthest, nearest);
+        }
+        state.farthest[job] = hn::GetLane(hn::MaxOfLanes(f, farthest));
+    }
+}
+
+template <bool kMotion, bool kDefocus>
+void cover_jobs(TileState& state, const LocalTriangle& T, std::size_t jobs) {
+    const std::size_t survivors = find_survivors<kMotion, kDefocus>(state, T, jobs);
+    write_hits<kMotion, kDefocus>(state, T, survivors);
+}
+
+// Bits of the columns and rows of blocks that the ranges touch; ranges in block units, already clamped to 0..7.
+HWY_INLINE std::uint64_t block_mask(int column0, int column1, int row0, int row1) {
+    const std::uint64_t columns = (0xffull >> (7 - column1)) & (0xffull << column0);
+    const std::uint64_t rows = (~0ull >> (8 * (7 - row1))) & (~0ull << (8 * row0));
+    return columns * 0x0101010101010101ull & rows;
+}
+
+// Step 1, triangle in front of the camera: for each stratum the blocks in which its samples can hit. Interval bounds: with
+// all w > 0, (x + u*c) / w over the stratum is extreme at an end of t and of u, at a vertex.
+void stratum_blocks(const TileState& state, const LocalTriangle& T, std::uint64_t* masks) {
+    const F f;
+    const I i;
+    float scale_x = 0, scale_y = 0, least_w = INFINITY;
+    const float ratio = static_cast<float>(state.work.frame.view.lens.ratio);
+    for (int k = 0; k < 3; ++k)
+        for (int end = 0; end < 2; ++end) {
+            const float e = static_cast<float>(end), w = T.qw[k] + e * T.dw[k], c = std::abs(T.qc[k] + e * T.dc[k]);
+            scale_x = std::max(scale_x, std::abs(T.qx[k] + e * T.dx[k]) + c + 17.0f * w);
+            scale_y = std::max(scale_y, std::abs(T.qy[k] + e * T.dy[k]) + ratio * c + 17.0f * w);
+            least_w = std::min(least_w, w);
+        }
+    const Vec slack_x = hn::Set(f, 40.0f * kUnitRoundoff * scale_x / least_w), slack_y = hn::Set(f, 40.0f * kUnitRoundoff * scale_y / least_w);
+    const Vec half = hn::Set(f, kCellSize / 2), to_blocks = hn::Set(f, 1.0f / kBlockSize);
+    HWY_ALIGN std::int32_t column0[64], column1[64], row0[64], row1[64];
+    for (int first = 0; first < state.stratum_count; first += static_cast<int>(hn::Lanes(f))) {
+        const Vec segments = hn::Set(f, T.segments), segment = hn::Set(f, -T.segment);
+        const Vec tau0 = hn::Max(hn::MulAdd(hn::Load(f, state.t0 + first), segments, segment), hn::Zero(f));
+        const Vec tau1 = hn::Min(hn::MulAdd(hn::Load(f, state.t1 + first), segments, segment), hn::Set(f, 1.0f));
+        Vec x0 = hn::Set(f, INFINITY), x1 = hn::Set(f, -INFINITY), y0 = x0, y1 = x1;
+        for (int k = 0; k < 3; ++k)
+            for (int end = 0; end < 2; ++end) {
+                const Vec tau = end == 0 ? tau0 : tau1;
+                const Vec x = hn::MulAdd(tau, hn::Set(f, T.dx[k]), hn::Set(f, T.qx[k]));
+                const Vec y = hn::MulAdd(tau, hn::Set(f, T.dy[k]), hn::Set(f, T.qy[k]));
+                const Vec w = hn::MulAdd(tau, hn::Set(f, T.dw[k]), hn::Set(f, T.qw[k]));
+                const Vec c = hn::MulAdd(tau, hn::Set(f, T.dc[k]), hn::Set(f, T.qc[k]));
+                const Vec inverse = hn::Div(hn::Set(f, 1.0f), w);
+                const Vec xa = hn::MulAdd(hn::Load(f, state.u0 + first), c, x), xb = hn::MulAdd(hn::Load(f, state.u1 + first), c, x);
+                const Vec ya = hn::MulAdd(hn::Load(f, state.v0 + first), c, y), yb = hn::MulAdd(hn::Load(f, state.v1 + first), c, y);
+                x0 = hn::Min(x0, hn::Mul(hn::Min(xa, xb), inverse));
+                x1 = hn::Max(x1, hn::Mul(hn::Max(xa, xb), inverse));
+                y0 = hn::Min(y0, hn::Mul(hn::Min(ya, yb), inverse));
+                y1 = hn::Max(y1, hn::Mul(hn::Max(ya, yb), inverse));
+            }
+        x0 = hn::Sub(x0, slack_x);
+        x1 = hn::Add(x1, slack_x);
+        y0 = hn::Sub(y0, slack_y);
+        y1 = hn::Add(y1, slack_y);
+        // Reject before clamping: a clamped bound would keep or lose the cell's last half pixel.
+        const Mask outside = hn::Or(hn::Or(hn::Gt(x0, half), hn::Lt(x1, hn::Neg(half))),
+                                    hn::Or(hn::Or(hn::Gt(y0, half), hn::Lt(y1, hn::Neg(half))), hn::Gt(tau0, tau1)));
+        const Vec zero = hn::Zero(f), seven = hn::Set(f, kCellBlocks - 1);
+        auto store = [&](Vec v, std::int32_t* out) HWY_ATTR {
+            hn::Store(hn::ConvertTo(i, hn::Min(hn::Max(hn::Mul(v, to_blocks), zero), seven)), i, out + first);
+        };
+        store(hn::Add(x0, half), column0);
+        store(hn::Add(x1, half), column1);
+        store(hn::Sub(half, y1), row0);
+        store(hn::Sub(half, y0), row1);
+        // An outside stratum has no rows: row0 = 8.
+        const auto out = hn::RebindMask(i, outside);
+        hn::Store(hn::IfThenElse(out, hn::Set(i, kCellBlocks), hn::Load(i, row0 + first)), i, row0 + first);
+    }
+    for (int s = 0; s < state.stratum_count; ++s)
+        masks[s] = row0[s] == kCellBlocks ? 0 : block_mask(column0[s], column1[s], row0[s], row1[s]);
+}
+
+// Step 1, triangle at the camera plane: intervals are invalid there, so each block asks the improved dual-space test.
+std::uint64_t blocks_at_camera_plane(const LocalTriangle& T, const CullTest& test, float ratio, std::uint64_t candidates) {
+    CullState scratch;
+    std::uint64_t kept = 0;
+    for (std::uint64_t m = candidates; m != 0; m &= m - 1) {
+        const int block = std::countr_zero(m);
+        const float x = block_x(block), y = block_y(block);
+        const Footprint footprint{x, x + kBlockSize, y - kBlockSize, y, {-1.0f, 1.0f, -ratio, ratio, 0.0f, 1.0f}};
+        if (test.prepare(T, footprint, scratch)) kept |= m & -m;
+    }
+    return kept;
+}
+
+// Step 2: the (block, slot) pairs that may hit and are not hidden.
+std::size_t list_jobs(TileState& state, const std::uint64_t* masks, std::uint64_t blocks, float nearest) {
+    const std::uint32_t slots = static_cast<std::uint32_t>(state.work.samples.slots());
+    std::size_t count = 0;
+    for (const SampleTable::Stratum& s : state.strata)
+        for (std::uint64_t m = masks[s.stratum] & s.blocks & blocks; m != 0; m &= m - 1) {
+            const std::uint32_t job = static_cast<std::uint32_t>(std::countr_zero(m)) * slots + s.slot;
+            state.jobs[count] = job;
+            count += nearest < state.farthest[job];
+        }
+    return count;
+}
+
+// Blocks of the cell that the pixel rectangle touches.
+std::uint64_t blocks_of(const BinnedTriangle& binned, const Tile& tile) {
+    const int left = tile.cell_x() * kCellSize, top = tile.cell_y() * kCellSize;
+    const int x0 = std::max<int>(binned.x0, tile.x0) - left, x1 = std::min<int>(binned.x1, tile.x1) - left - 1;
+    const int y0 = std::max<int>(binned.y0, tile.y0) - top, y1 = std::min<int>(binned.y1, tile.y1) - top - 1;
+    return block_mask(x0 / kBlockSize, x1 / kBlockSize, y0 / kBlockSize, y1 / kBlockSize);
+}
+
+void cover_triangle(TileState& state, const BinnedTriangle& binned, const CullTest& camera_plane_test) {
+    const LocalTriangle T = localize(state.work.frame, binned.triangle, binned.segment, state.centre);
+    std::uint64_t blocks = blocks_of(binned, state.work.tile) & state.tile_blocks;
+    std::uint64_t masks[64];
+    if (T.behind) {
+        blocks = blocks_at_camera_plane(T, camera_plane_test, static_cast<float>(state.work.frame.view.lens.ratio), blocks);
+        std::fill(masks, masks + state.stratum_count, ~0ull);
+    } else {
+        stratum_blocks(state, T, masks);
+    }
+    // Rounding may put a hit a few ulps in front of the nearest vertex.
+    const float nearest = T.orthographic ? -INFINITY : binned.nearest_w * (1.0f - 16.0f * kUnitRoundoff);
+    const std::size_t jobs = list_jobs(state, masks, blocks, nearest);
+    state.counts.tested += static_cast<std::int64_t>(jobs) * kLanes;
+    bool motion = T.segments > 1.0f, defocus = false;
+    for (int k = 0; k < 3; ++k) {
+        motion = motion || T.dx[k] != 0 || T.dy[k] != 0 || T.dw[k] != 0 || T.dc[k] != 0 || T.dz[k] != 0;
+        defocus = defocus || T.qc[k] != 0 || T.dc[k] != 0;
+    }
+    // Adding u*0 or t*0 is exact: the shorter kernels give the same bits.
+    if (motion && defocus)
+        cover_jobs<true, true>(state, T, jobs);
+    else if (motion)
+        cover_jobs<true, false>(state, T, jobs);
+    else if (defocus)
+        cover_jobs<false, true>(state, T, jobs);
+    else
+        cover_jobs<false, false>(state, T, jobs);
+}
+
+}  // namespace
+
+void cover_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
+    TileState state{work, hits, counts, cell_centre(work.frame.view, work.tile.cell_x(), work.tile.cell_y()), {}, {}, 0, {}, {}, {}, {},
+                    {}, {}, {}, {}, {}, {}, 0};
+    const int slots = work.samples.slots();
+    const int left = work.tile.cell_x() * kCellSize, top = work.tile.cell_y() * kCellSize;
+    state.strata = work.samples.strata(work.tile.cell_x(), work.tile.cell_y());
+    state.domains = work.samples.domains();
+    state.stratum_count = static_cast<int>(state.domains.size());
+    for (int s = 0; s < 64; ++s) {
+        const Domain d = s < state.stratum_count ? state.domains[s] : Domain{0, 0, 0, 0, 2, -2};
+        state.u0[s] = d.u0, state.u1[s] = d.u1, state.v0[s] = d.v0, state.v1[s] = d.v1, state.t0[s] = d.t0, state.t1[s] = d.t1;
+    }
+    state.tile_blocks = block_mask((work.tile.x0 - left) / kBlockSize, (work.tile.x1 - 1 - left) / kBlockSize,
+                                   (work.tile.y0 - top) / kBlockSize, (work.tile.y1 - 1 - top) / kBlockSize);
+    state.block_samples.resize(kBlocksPerCell);
+    for (int b = 0; b < kBlocksPerCell; ++b)
+        state.block_samples[b] = work.samples.block(left / kBlockSize + b % kCellBlocks, top / kBlockSize + b / kCellBlocks).data();
+    state.farthest.assign(static_cast<std::size_t>(kBlocksPerCell) * slots, INFINITY);
+    state.jobs.resize(static_cast<std::size_t>(kBlocksPerCell) * slots + 1);
+    state.survivors.resize(state.jobs.size());
+
+    // Pixels beyond the tile's border take no hits: nothing is nearer than -infinity.
+    auto for_each_outside_lane = [&](auto&& visit) {
+        for (int b = 0; b < kBlocksPerCell; ++b)
+            for (int lane = 0; lane < kLanes; ++lane) {
+                const int px = left + b % kCellBlocks * kBlockSize + lane % kBlockSize;
+                const int py = top + b / kCellBlocks * kBlockSize + lane / kBlockSize;
+                if (px < work.tile.x1 && py < work.tile.y1) continue;
+                for (int slot = 0; slot < slots; ++slot) visit((static_cast<std::size_t>(b) * slots + slot) * kLanes + lane);
+            }
+    };
+    const bool cut = work.tile.x1 % kBlockSize != 0 || work.tile.y1 % kBlockSize != 0;
+    if (cut) for_each_outside_lane([&](std::size_t s) { hits.depth[s] = -INFINITY; });
+    const CullTest& camera_plane_test = *find_cull_test("improved-dual-space");
+    for (const std::uint32_t entry : work.list) cover_triangle(state, work.triangles[entry], camera_plane_test);
+    if (cut) for_each_outside_lane([&](std::size_t s) { hits.depth[s] = INFINITY; });
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace pentaprism
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pentaprism {
+
+void cover_vectors(const TileWork& work, Hits& hits, CoverCounts& counts) {
+    switch (cpu_isa()) {
+#ifndef PENTAPRISM_SCALAR_ONLY
+#if HWY_TARGETS & HWY_AVX3
+        case Isa::kAvx512: return N_AVX3::cover_tile(work, hits, counts);
+#endif
+#if HWY_TARGETS & HWY_AVX2
+        case Isa::kAvx2: return N_AVX2::cover_tile(work, hits, counts);
+#endif
+#if HWY_TARGETS & HWY_NEON
+        case Isa::kNeon: return N_NEON::cover_tile(work, hits, counts);
+#endif
+#endif
+        default: return cover_with_test(work, *find_cull_test("improved-dual-space"), hits, counts);
+    }
+}
+
+}  // namespace pentaprism
+#endif

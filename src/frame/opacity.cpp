@@ -1,0 +1,83 @@
+#include "frame/opacity.h"
+
+#include <algorithm>
+
+namespace pentaprism {
+namespace {
+
+// Wellons' low-bias mixer (hash-prospector), as in the sample pattern.
+std::uint32_t mix(std::uint32_t x) {
+    x ^= x >> 16;
+    x *= 0x7feb352du;
+    x ^= x >> 15;
+    x *= 0x846ca68bu;
+    return x ^ (x >> 16);
+}
+
+// A permutation of [0, n) chosen by `seed`: Kensler 2013, Correlated Multi-Jittered Sampling, section 4 (permute the
+// next power of two by steps that can be undone, again until the result lies in the range).
+std::uint32_t permuted(std::uint32_t i, std::uint32_t n, std::uint32_t seed) {
+    std::uint32_t mask = n - 1;
+    for (int shift = 1; shift < 32; shift *= 2) mask |= mask >> shift;
+    do {
+        i = (i + seed) & mask;
+        i ^= (seed >> 16) & mask;
+        i *= 0xe170893du;
+        i = (i ^ (seed >> 8)) & mask;
+        i ^= i >> 4;
+        i = (i * (0x0929eb3fu ^ ((seed >> 23) << 1))) & mask;
+        i ^= i >> 1;
+        i = (i * 0x6935fa69u) & mask;
+        i ^= i >> 11;
+        i = (i * 0x74dcb303u) & mask;
+        i ^= i >> 2;
+        i = (i * 0x9e501cc3u) & mask;
+        i ^= i >> 2;
+    } while (i >= n);
+    return i;
+}
+
+// Stratified over the pixel's samples, independent between triangles: two layers, also of one mesh, must not hide
+// together.
+float threshold(std::uint32_t triangle, int px, int py, int sample_index, int spp) {
+    const std::uint32_t pixel = mix(mix(static_cast<std::uint32_t>(px)) + static_cast<std::uint32_t>(py));
+    const std::uint32_t seed = mix(pixel + mix(triangle + 0x9e3779b9u));
+    const std::uint32_t index = static_cast<std::uint32_t>(sample_index);
+    const std::uint32_t n = static_cast<std::uint32_t>(std::max(1, spp));
+    const float offset = static_cast<float>(mix(seed + index + 1u) >> 8) * 0x1p-24f;
+    return std::min((static_cast<float>(permuted(index % n, n, seed)) + offset) / static_cast<float>(n),
+                    1.0f - 0x1p-24f);
+}
+
+float vertex_alpha(const Primitive& primitive, const std::array<std::uint32_t, 3>& vertices, const float b[3]) {
+    if (primitive.colors.empty()) return 1.0f;
+    return b[0] * primitive.colors[vertices[0]].w + b[1] * primitive.colors[vertices[1]].w +
+           b[2] * primitive.colors[vertices[2]].w;
+}
+
+float texture_alpha(const Frame& frame, const Primitive& primitive, const TextureRef& ref,
+                    const std::array<std::uint32_t, 3>& vertices, const float b[3]) {
+    const Pyramid* pyramid = frame.textures ? frame.textures->color(ref) : nullptr;
+    if (!pyramid) return 1.0f;
+    const std::vector<glm::vec2>& uv = primitive.texcoords[ref.texcoord == 1 ? 1 : 0];
+    if (uv.empty()) return pyramid->alpha(ref, transform_uv(ref, {0.0f, 0.0f}));
+    return pyramid->alpha(ref,
+                          transform_uv(ref, b[0] * uv[vertices[0]] + b[1] * uv[vertices[1]] + b[2] * uv[vertices[2]]));
+}
+
+}  // namespace
+
+bool is_opaque_at(const Frame& frame, std::uint32_t triangle, const float barycentrics[3], int px, int py,
+                  int sample_index, int spp) {
+    const Part& part = frame.parts[frame.part_of[triangle]];
+    if (part.alpha_mode == AlphaMode::kOpaque || part.material == kNone) return true;
+    const Material& material = frame.scene->materials[part.material];
+    const Primitive& primitive = frame.scene->meshes[part.placement.mesh].primitives[part.placement.primitive];
+    const std::array<std::uint32_t, 3> vertices = frame.vertices(triangle);
+    const float alpha = material.base_color.w * vertex_alpha(primitive, vertices, barycentrics) *
+                        texture_alpha(frame, primitive, material.base_color_texture, vertices, barycentrics);
+    if (part.alpha_mode == AlphaMode::kMask) return alpha >= material.alpha_cutoff;
+    return alpha > threshold(triangle, px, py, sample_index, spp);
+}
+
+}  // namespace pentaprism

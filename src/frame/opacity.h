@@ -1,0 +1,18 @@
+#pragma once
+// Alpha masks and blended surfaces: whether a covered sample of a triangle is really a hit. Asked by the coverage
+// stage, the references and later the shadow maps alike.
+
+#include <cstdint>
+
+#include "frame/frame.h"
+
+namespace pentaprism {
+
+/// MASK: bilinear alpha of mip 0 at the sample's own barycentrics, times factor and vertex colour, reaches the cutoff.
+/// BLEND: stochastic transparency (Enderton, Sintorn, Shirley, Luebke 2010): alpha exceeds a threshold that is a hash
+/// of (triangle, pixel, sample index), stratified over the samples of the pixel (Laine & Karras 2011). OPAQUE: true.
+/// Thread-safe; no allocation.
+bool is_opaque_at(const Frame& frame, std::uint32_t triangle, const float barycentrics[3], int px, int py,
+                  int sample_index, int spp);
+
+}  // namespace pentaprism

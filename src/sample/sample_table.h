@@ -1,0 +1,87 @@
+#pragma once
+// The 5D sample points of a picture: the only place randomness is made. A sample is a pure function of (pixel, index,
+// seed); the table holds one period of it, arranged as the vectors that the coverage test reads.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "camera/view.h"
+
+namespace pentaprism {
+
+inline constexpr int kBlockSize = 4;                             ///< pixels a side of a block
+inline constexpr int kLanes = kBlockSize * kBlockSize;           ///< samples in a vector: one for each pixel of a block
+inline constexpr int kCellSize = 32;                             ///< pixels a side of a cell of the exact test's grid
+inline constexpr int kCellBlocks = kCellSize / kBlockSize;       ///< blocks a side of a cell
+inline constexpr int kBlocksPerCell = kCellBlocks * kCellBlocks;
+
+/// One sample. x, y: offset in the pixel from its top left corner, in [0, 1), multiples of 1/256, y down. (u, v): in the
+/// unit disk, v up and already times Lens::ratio. t in [0, 1), a multiple of 2^-24.
+struct SamplePoint {
+    float x = 0, y = 0, u = 0, v = 0, t = 0;
+};
+
+/// Sixteen samples, lane = 4 * (row in the block) + column. (x, y) is the place in the block of 4x4 pixels, from its top
+/// left corner, x right in [0, 4), y UP in (-4, 0].
+struct alignas(64) SampleVector {
+    float x[kLanes], y[kLanes], u[kLanes], v[kLanes], t[kLanes];
+};
+
+/// Closed ranges of the lens and the shutter.
+struct Domain {
+    float u0, u1, v0, v1, t0, t1;
+};
+
+/// Which coordinates the samples of one vector share closely: those that blur.
+enum class Grouping : std::uint8_t { kStill, kMotion, kDefocus, kBoth };
+
+class SampleTable {
+  public:
+    /// Cost and memory: period^2 * spp * 20 bytes, at most about 90 MB.
+    SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping grouping);
+
+    int spp() const { return spp_; }
+    int slots() const { return spp_; }  ///< vectors of a block
+    Grouping grouping() const { return grouping_; }
+
+    /// Blocks are addressed in the whole picture: block (bx, by) covers pixels [4 bx, 4 bx + 4) x [4 by, 4 by + 4).
+    std::span<const SampleVector> block(int bx, int by) const;
+
+    /// Sample index (0 .. spp - 1) of each lane of each slot of a block: at [slot * kLanes + lane]. The inverse for one
+    /// lane is slot_of().
+    std::span<const std::uint16_t> indices(int bx, int by) const;
+
+    /// The sample itself, for references and replays: reads the table.
+    SamplePoint sample(int px, int py, int index) const;
+
+    /// Slot that holds sample `index` of the pixel.
+    int slot_of(int px, int py, int index) const;
+
+    /// Strata of (u, v, t): all samples of a stratum lie in domains()[stratum] wherever they are in the picture.
+    std::span<const Domain> domains() const { return domains_; }
+
+    /// The vectors of a cell by stratum: slot `slot` of the blocks in `blocks` (bit 8 * row + column) lies in `stratum`.
+    struct Stratum {
+        std::uint16_t slot, stratum;
+        std::uint64_t blocks;
+    };
+    /// Cells are addressed in the whole picture: cell (cx, cy) covers pixels [32 cx, 32 cx + 32) x ...
+    std::span<const Stratum> strata(int cx, int cy) const;
+
+  private:
+    std::size_t cell_index(int cx, int cy) const;
+    std::size_t block_index(int bx, int by) const;
+
+    int spp_, period_;
+    std::uint32_t seed_;
+    Grouping grouping_;
+    std::vector<SampleVector> vectors_;       // [block][slot]
+    std::vector<std::uint16_t> indices_;      // [block][slot][lane]
+    std::vector<std::uint16_t> slots_;        // [block][lane][index]
+    std::vector<Domain> domains_;
+    std::vector<std::vector<Stratum>> strata_;  // by cell of the period
+};
+
+}  // namespace pentaprism

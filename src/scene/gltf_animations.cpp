@@ -1,0 +1,145 @@
+// Animations (glTF 2.0, 3.11).
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "scene/gltf_parts.h"
+
+namespace pentaprism::gltf {
+
+namespace {
+
+std::optional<ChannelPath> channel_path(const std::string& path) {
+    if (path == "translation") return ChannelPath::kTranslation;
+    if (path == "rotation") return ChannelPath::kRotation;
+    if (path == "scale") return ChannelPath::kScale;
+    if (path == "weights") return ChannelPath::kWeights;
+    return std::nullopt;
+}
+
+Interpolation sampler_interpolation(const Object& sampler) {
+    const std::string name = sampler.text("interpolation", "LINEAR");
+    if (name == "STEP") return Interpolation::kStep;
+    if (name == "LINEAR") return Interpolation::kLinear;
+    if (name == "CUBICSPLINE") return Interpolation::kCubicSpline;
+    sampler.fail(fmt::format("has an unknown interpolation \"{}\"", name));
+}
+
+void read_times(Document& document, const Object& sampler, std::vector<float>& times) {
+    const Index input = sampler.index("input", "accessors");
+    require_type(document, input, {"SCALAR"}, sampler.where() + ", input,");
+    times = read_floats(document, input);
+    if (!all_finite(times)) sampler.fail("has a time that is not finite");
+    if (!std::is_sorted(times.begin(), times.end())) sampler.fail("has times that do not ascend");
+    if (times.front() < 0.0f) document.warn(sampler.where() + " has times below 0");
+}
+
+void read_values(Document& document, const Object& sampler, Channel& channel) {
+    const Index output = sampler.index("output", "accessors");
+    const char* const type = channel.path == ChannelPath::kWeights    ? "SCALAR"
+                             : channel.path == ChannelPath::kRotation ? "VEC4"
+                                                                      : "VEC3";
+    require_type(document, output, {type}, sampler.where() + ", output,");
+    channel.values = read_floats(document, output);
+    if (!all_finite(channel.values)) sampler.fail("has a value that is not finite");
+    const std::size_t for_each_key =
+        static_cast<std::size_t>(channel.width) * (channel.interpolation == Interpolation::kCubicSpline ? 3 : 1);
+    if (channel.values.size() != channel.times.size() * for_each_key) {
+        sampler.fail(fmt::format("has {} numbers for {} keys, which take {} each", channel.values.size(),
+                                 channel.times.size(), for_each_key));
+    }
+}
+
+/// Keys of rotations as unit quaternions. Those of cubic splines are left alone: the result is normalised, not the
+/// keys.
+void normalise_rotations(Document& document, const Object& sampler, Channel& channel) {
+    if (channel.path != ChannelPath::kRotation || channel.interpolation == Interpolation::kCubicSpline) return;
+    for (std::size_t i = 0; i < channel.values.size(); i += 4) {
+        float* q = &channel.values[i];
+        const double length =
+            std::sqrt(double(q[0]) * q[0] + double(q[1]) * q[1] + double(q[2]) * q[2] + double(q[3]) * q[3]);
+        if (!(std::abs(length - 1.0) < 0.01))
+            document.warn(sampler.where() + " has rotations that are not unit quaternions; they are scaled");
+        if (!(length > 0.0)) q[3] = 1.0f;
+        for (int k = 0; k < 4 && length > 0.0; ++k) q[k] = static_cast<float>(q[k] / length);
+    }
+}
+
+/// False: the channel moves nothing that is shown, for a reason that was given as a warning.
+bool read_target(Document& document, const Scene& scene, const Object& object, Channel& channel) {
+    const Object target = object.child("target");
+    channel.node = target.index("node", "nodes");
+    if (!target.has("path")) target.fail("has no path");
+    const std::string path = target.text("path");
+    const auto known = channel_path(path);
+    if (!known) {
+        document.warn(
+            fmt::format("{} has the path \"{}\", which is not supported; it does not move", target.where(), path));
+        return false;
+    }
+    channel.path = *known;
+    if (channel.node == kNone) return false;
+    const Node& node = scene.nodes[static_cast<std::size_t>(channel.node)];
+    if (channel.path == ChannelPath::kWeights) {
+        channel.width =
+            node.mesh == kNone ? 0 : static_cast<int>(scene.meshes[static_cast<std::size_t>(node.mesh)].weights.size());
+        if (channel.width == 0)
+            document.warn(fmt::format("{} animates weights of node {}, which has no morph targets", target.where(),
+                                      channel.node));
+        return channel.width != 0;
+    }
+    channel.width = channel.path == ChannelPath::kRotation ? 4 : 3;
+    if (node.matrix) {
+        document.warn(
+            fmt::format("{} animates node {}, which has a matrix; it does not move", target.where(), channel.node));
+        return false;
+    }
+    return true;
+}
+
+Animation read_animation(Document& document, const Scene& scene, const Object& object) {
+    Animation animation;
+    animation.name = object.text("name");
+    const auto samplers = object.children("samplers", "sampler");
+    for (const Object& sampler : samplers) {
+        if (!sampler.has("input") || !sampler.has("output")) sampler.fail("has no input or output");
+        sampler.index("input", "accessors");
+        sampler.index("output", "accessors");
+        sampler_interpolation(sampler);
+    }
+    const auto channels = object.children("channels", "channel");
+    if (channels.empty()) object.fail("has no channels");
+    std::set<std::pair<Index, ChannelPath>> targets;
+    for (const Object& part : channels) {
+        const std::size_t index = part.required_size("sampler");
+        if (index >= samplers.size())
+            part.fail(fmt::format("refers to sampler {}, but there are {}", index, samplers.size()));
+        Channel channel;
+        if (!read_target(document, scene, part, channel)) continue;
+        const Object& sampler = samplers[index];
+        channel.interpolation = sampler_interpolation(sampler);
+        read_times(document, sampler, channel.times);
+        read_values(document, sampler, channel);
+        normalise_rotations(document, sampler, channel);
+        if (!targets.emplace(channel.node, channel.path).second) {
+            document.warn(part.where() + " moves what another channel of the clip moves; the first one is used");
+            continue;
+        }
+        animation.duration = std::max(animation.duration, static_cast<double>(channel.times.back()));
+        animation.channels.push_back(std::move(channel));
+    }
+    return animation;
+}
+
+}  // namespace
+
+void read_animations(Document& document, Scene& scene) {
+    for (std::size_t i = 0; i < document.count("animations"); ++i) {
+        scene.animations.push_back(read_animation(document, scene, document.item("animations", "animation", i)));
+    }
+}
+
+}  // namespace pentaprism::gltf

@@ -1,0 +1,15 @@
+#pragma once
+// Pictures for materials, from the bytes of a PNG, JPEG or another file format to 8-bit RGBA.
+
+#include <pentaprism/scene.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace pentaprism {
+
+/// False: `problem` says why; the image is left alone. 16-bit channels are reduced to 8; grey becomes RGB.
+bool decode_image(std::span<const std::uint8_t> bytes, Image& image, std::string& problem);
+
+}  // namespace pentaprism

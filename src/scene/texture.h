@@ -1,0 +1,83 @@
+#pragma once
+// Images as they are looked up: mip pyramids of 8-bit texels, decoded on the way out.
+//
+// Levels are averaged in linear light (never encoded bytes) with a box whose weights are exact for odd sizes, and
+// stored as 8 bits again: half the memory of half floats, and faster where memory is what a look-up waits for.
+
+#include <pentaprism/scene.h>
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+#include <memory>
+#include <vector>
+
+namespace pentaprism {
+
+enum class Encoding : std::uint8_t { kSrgb, kLinear };
+
+/// One image in all its sizes.
+class Pyramid {
+  public:
+    /// `weight_by_alpha`: texels count in coarser levels by their opacity, so that the colour under fully transparent
+    /// texels (often black) does not bleed into leaves' edges. An image with a size that is not positive gives one
+    /// white texel.
+    Pyramid(const Image& image, Encoding encoding, bool weight_by_alpha);
+
+    int width() const { return levels_[0].width; }
+    int height() const { return levels_[0].height; }
+    int level_count() const { return static_cast<int>(levels_.size()); }
+
+    /// Linear colour and opacity in [0, 1] at `uv`, after the texture's transform; v down, (0, 0) the top left corner
+    /// of the image. `level` is log2 of the footprint's width in texels of level 0, clamped to the levels there are;
+    /// between two levels both are looked up and mixed. `ref` says how edges wrap. Levels are left out only where the
+    /// file asks for the nearest texel without levels (drawn pixels); a mere "linear" would alias.
+    glm::vec4 sample(const TextureRef& ref, glm::vec2 uv, float level) const;
+
+    /// Opacity alone, bilinear in level 0 whatever `ref.mipmapped` says: for alpha masks.
+    float alpha(const TextureRef& ref, glm::vec2 uv) const;
+
+    /// One decoded texel, for tests; x and y inside the level.
+    glm::vec4 texel(int level, int x, int y) const;
+
+  private:
+    struct Level {
+        int width = 1, height = 1;
+        std::vector<std::uint8_t> texels;
+    };
+    Level halved(const Level& fine, bool weight_by_alpha) const;
+    glm::vec4 decode(const std::uint8_t* texel) const;
+    glm::vec4 bilinear(const Level& level, const TextureRef& ref, glm::vec2 uv) const;
+    glm::vec4 nearest(const Level& level, const TextureRef& ref, glm::vec2 uv) const;
+
+    const float* color_of_code_;  // 256 entries
+    std::vector<Level> levels_;
+    std::vector<std::uint8_t>
+        opacity_;  // level 0 alone, 1 byte a texel: a quarter of the cache; empty if all are opaque
+};
+
+/// The pyramids of a scene. An image that serves both as colour and as data is two textures.
+class Textures {
+  public:
+    explicit Textures(const Scene& scene);
+
+    /// Null for kNone, for an index out of range and for an image that no material uses in this way.
+    const Pyramid* color(const TextureRef& ref) const { return find(colors_, ref.image); }
+    const Pyramid* data(const TextureRef& ref) const { return find(data_, ref.image); }
+
+  private:
+    using Table = std::vector<std::unique_ptr<const Pyramid>>;  // by index of the image
+    static const Pyramid* find(const Table& table, Index image) {
+        return image >= 0 && static_cast<std::size_t>(image) < table.size() ? table[image].get() : nullptr;
+    }
+    Table colors_, data_;
+};
+
+/// Built once for a scene and handed to each of its frames.
+std::shared_ptr<const Textures> make_textures(const Scene& scene);
+
+/// The linear part of a texture's transform, and the whole: uv' = linear * uv + offset. Column-major.
+glm::vec4 uv_matrix(const TextureRef& ref);
+glm::vec2 transform_uv(const TextureRef& ref, glm::vec2 uv);
+
+}  // namespace pentaprism

@@ -1,0 +1,218 @@
+#include "shade/shade_tile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "cover/exact.h"
+#include "bound/local_triangle.h"
+#include "shade/sample_order.h"
+#include "shade/shaded_triangle.h"
+
+namespace pentaprism {
+namespace {
+
+// A point belongs to one pixel, so a tile may be shaded in pieces of whole blocks: memory stays bounded at 4096 samples
+// a pixel.
+constexpr int kSamplesPerChunk = 1 << 16;
+constexpr float kBrightest = 0x1p20f;
+
+glm::vec4 contained(const glm::vec3& color) {
+    const auto one = [](float x) { return std::isfinite(x) ? std::clamp(x, 0.0f, kBrightest) : 0.0f; };
+    return {one(color.x), one(color.y), one(color.z), 1.0f};
+}
+
+// The mean of barycentrics, inside the triangle: rounding, and slivers' samples, may lie just outside.
+class Mean {
+  public:
+    void add(const float b[3]) {
+        const glm::vec3 value(b[0], b[1], b[2]);
+        if (!std::isfinite(value.x + value.y + value.z)) return;
+        sum_ += value;
+        ++count_;
+    }
+    glm::vec3 value() const {
+        const glm::vec3 inside(std::max(sum_.x, 0.0f), std::max(sum_.y, 0.0f), std::max(sum_.z, 0.0f));
+        const float total = inside.x + inside.y + inside.z;
+        return count_ > 0 && total > 0.0f ? inside / total : glm::vec3(1.0f / 3.0f);
+    }
+
+  private:
+    glm::vec3 sum_{0.0f};
+    int count_ = 0;
+};
+
+// One triangle in its cell, localized for each segment of its motion when a sample first asks.
+class LocalRun {
+  public:
+    LocalRun(const Frame& frame, const CellCentre& centre) : frame_(frame), centre_(centre) {}
+
+    void start(std::uint32_t triangle) {
+        triangle_ = triangle;
+        segments_ = frame_.parts[frame_.part_of[triangle]].segments;
+        ready_.assign(segments_, 0);
+        if (static_cast<int>(local_.size()) < segments_) local_.resize(segments_);
+    }
+    SampleHit project(const LocalSample& sample) {
+        const int segment = std::clamp(static_cast<int>(sample.t * static_cast<float>(segments_)), 0, segments_ - 1);
+        if (!ready_[segment]) {
+            local_[segment] = localize(frame_, triangle_, segment, centre_);
+            ready_[segment] = 1;
+        }
+        return project_sample(local_[segment], sample);
+    }
+
+  private:
+    const Frame& frame_;
+    CellCentre centre_;
+    std::uint32_t triangle_ = 0;
+    int segments_ = 1;
+    std::vector<std::uint8_t> ready_;
+    std::vector<LocalTriangle> local_;
+};
+
+// The table's samples of a cell, as the exact test sees them.
+class CellSamples {
+  public:
+    CellSamples(const SampleTable& samples, const Tile& tile) {
+        for (int block = 0; block < kBlocksPerCell; ++block)
+            blocks_[block] = samples.block(tile.cell_x() * kCellBlocks + block % kCellBlocks,
+                                           tile.cell_y() * kCellBlocks + block / kCellBlocks);
+    }
+    LocalSample at(int pixel, int slot) const {
+        const int block = pixel / kLanes, lane = pixel % kLanes;
+        const SampleVector& vector = blocks_[block][slot];
+        const int half = kCellSize / 2;
+        const float left = static_cast<float>(block % kCellBlocks * kBlockSize - half);
+        const float top = static_cast<float>(half - block / kCellBlocks * kBlockSize);
+        return {left + vector.x[lane], top + vector.y[lane], vector.u[lane], vector.v[lane], vector.t[lane]};
+    }
+
+  private:
+    std::array<std::span<const SampleVector>, kBlocksPerCell> blocks_;
+};
+
+std::size_t hit_index(int pixel, int slot, int slots) {
+    return (static_cast<std::size_t>(pixel / kLanes) * slots + slot) * kLanes + pixel % kLanes;
+}
+
+}  // namespace
+
+std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& samples, const Tile& tile,
+                               const Hits& hits, TileShade& out) {
+    const Frame& frame = scene.frame();
+    const int slots = samples.slots();
+    out.point_of_sample.resize(hits.triangle.size());
+    out.colors.clear();
+
+    const CellSamples cell(samples, tile);
+    LocalRun run(frame, cell_centre(frame.view, tile.cell_x(), tile.cell_y()));
+    const int blocks_per_chunk = std::max(1, kSamplesPerChunk / (kLanes * slots));
+    for (int block = 0; block < kBlocksPerCell; block += blocks_per_chunk) {
+        collect(samples, tile, hits, block, std::min(block + blocks_per_chunk, kBlocksPerCell), out);
+        sort_by_triangle();
+        std::uint32_t begin = 0;
+        for (std::size_t number = 0; number < triangles_.size(); ++number) {
+            const std::uint32_t end = counts_[number];
+            run.start(triangles_[number]);
+            const ShadedTriangle shaded(scene, triangles_[number]);
+            while (begin < end) {
+                // The samples of one pixel, in index order; those that see the back are another point.
+                const std::uint16_t pixel = sorted_[begin].pixel;
+                const std::uint32_t none = kBackground;
+                std::uint32_t point[2] = {none, none};
+                Mean mean[2];
+                for (; begin < end && sorted_[begin].pixel == pixel; ++begin) {
+                    const int slot = sorted_[begin].slot;
+                    const SampleHit hit = run.project(cell.at(pixel, slot));
+                    if (point[hit.front] == none) {
+                        point[hit.front] = static_cast<std::uint32_t>(out.colors.size());
+                        out.colors.emplace_back();
+                    }
+                    mean[hit.front].add(hit.barycentrics);
+                    out.point_of_sample[hit_index(pixel, slot, slots)] = point[hit.front];
+                }
+                for (int front = 0; front < 2; ++front)
+                    if (point[front] != none)
+                        out.colors[point[front]] = contained(shaded.shade(mean[front].value(), front != 0));
+            }
+        }
+    }
+    return static_cast<std::int64_t>(out.colors.size());
+}
+
+// Lists the covered samples of some blocks pixel by pixel in index order, and numbers the triangles as they come.
+void TileShader::collect(const SampleTable& samples, const Tile& tile, const Hits& hits, int first_block,
+                         int last_block, TileShade& out) {
+    entries_.clear();
+    locals_.clear();
+    counts_.clear();
+    triangles_.clear();
+    std::fill(table_.begin(), table_.end(), 0u);
+    const int slots = samples.slots();
+    static thread_local SampleOrder order;
+    for (int block = first_block; block < last_block; ++block) {
+        const int bx = tile.cell_x() * kCellBlocks + block % kCellBlocks;
+        const int by = tile.cell_y() * kCellBlocks + block / kCellBlocks;
+        if (bx * kBlockSize < tile.x0 || bx * kBlockSize >= tile.x1) continue;
+        if (by * kBlockSize < tile.y0 || by * kBlockSize >= tile.y1) continue;
+        order.read(samples, bx, by);
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const std::uint16_t* slot = order.slots(lane);
+            const int pixel = block * kLanes + lane;
+            for (int index = 0; index < slots; ++index) {
+                const std::size_t at = hit_index(pixel, slot[index], slots);
+                const std::uint32_t triangle = hits.triangle[at];
+                if (triangle == kNoTriangle) {
+                    out.point_of_sample[at] = kBackground;
+                    continue;
+                }
+                const std::uint32_t local = !locals_.empty() && triangles_[locals_.back()] == triangle
+                                                ? locals_.back()
+                                                : local_triangle(triangle);
+                ++counts_[local];
+                locals_.push_back(local);
+                entries_.push_back({static_cast<std::uint16_t>(pixel), slot[index]});
+            }
+        }
+    }
+}
+
+// Stable, so pixels and indices stay in order within a triangle.
+void TileShader::sort_by_triangle() {
+    sorted_.resize(entries_.size());
+    std::uint32_t sum = 0;
+    for (std::uint32_t& count : counts_) {
+        const std::uint32_t here = count;
+        count = sum;
+        sum += here;
+    }
+    for (std::size_t i = 0; i < entries_.size(); ++i) sorted_[counts_[locals_[i]]++] = entries_[i];
+}
+
+std::uint32_t TileShader::local_triangle(std::uint32_t triangle) {
+    if (2 * (triangles_.size() + 1) > table_.size()) grow_table();
+    const std::size_t mask = table_.size() - 1;
+    std::size_t at = (triangle * 0x9e3779b1u >> 7) & mask;
+    while (table_[at] != 0) {
+        if (triangles_[table_[at] - 1] == triangle) return table_[at] - 1;
+        at = (at + 1) & mask;
+    }
+    triangles_.push_back(triangle);
+    counts_.push_back(0);
+    table_[at] = static_cast<std::uint32_t>(triangles_.size());
+    return table_[at] - 1;
+}
+
+// At most half full, so that a search always ends at an empty entry.
+void TileShader::grow_table() {
+    table_.assign(std::max<std::size_t>(1024, 2 * table_.size()), 0u);
+    const std::size_t mask = table_.size() - 1;
+    for (std::size_t number = 0; number < triangles_.size(); ++number) {
+        std::size_t at = (triangles_[number] * 0x9e3779b1u >> 7) & mask;
+        while (table_[at] != 0) at = (at + 1) & mask;
+        table_[at] = static_cast<std::uint32_t>(number + 1);
+    }
+}
+
+}  // namespace pentaprism

@@ -1,0 +1,54 @@
+#pragma once
+// What shading looks up: the frame's geometry in world space at mid-shutter, bound materials and lights.
+
+#include <pentaprism/scene.h>
+
+#include <array>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <vector>
+
+#include "frame/frame.h"
+#include "shade/footprint.h"
+#include "shade/lights.h"
+
+namespace pentaprism {
+
+struct BoundMaterial {
+    Material material;
+    BoundTexture base_color, metallic_roughness, occlusion, emissive;
+    bool textured = false;  ///< any of them
+};
+
+/// A placed primitive at mid-shutter.
+struct ShadedPart {
+    const Primitive* primitive = nullptr;
+    const BoundMaterial* material = nullptr;
+    std::vector<glm::vec3> positions;  ///< of each vertex, relative to the eye: world axes
+    std::vector<glm::vec3> normals;    ///< unit
+};
+
+class ShadingScene {
+  public:
+    /// Poses all parts of the frame. The frame, its scene and its textures must outlive this.
+    explicit ShadingScene(const Frame& frame);
+    ShadingScene(const ShadingScene&) = delete;
+    ShadingScene& operator=(const ShadingScene&) = delete;
+
+    const Frame& frame() const { return frame_; }
+    const ShadedPart& part_of(std::uint32_t triangle) const { return parts_[frame_.part_of[triangle]]; }
+    const Lighting& lighting() const { return lighting_; }
+
+    /// Unit vector from a point to the eye; for an orthographic camera the same everywhere.
+    glm::vec3 to_eye(const glm::vec3& position) const;
+
+  private:
+    const Frame& frame_;
+    std::vector<BoundMaterial> materials_;  // the scene's, then the default one
+    std::vector<ShadedPart> parts_;
+    Lighting lighting_;
+    glm::vec3 backwards_;  // against the direction of view
+};
+
+}  // namespace pentaprism
