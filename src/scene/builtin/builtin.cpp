@@ -1,0 +1,40 @@
+// The list of built-in scenes.
+
+#include <fmt/format.h>
+#include <pentaprism/error.h>
+
+#include "scene/builtin/recipes.h"
+
+namespace pentaprism {
+namespace {
+
+struct Recipe {
+    BuiltinScene scene;
+    Scene (*make)();
+};
+
+constexpr Recipe kRecipes[] = {
+    {{"fairy-forest",
+      "a fairy crosses a glade at dusk: thousands of leaves, falling petals, glowing lights out of focus", 170000},
+     builtin::fairy_forest},
+};
+
+}  // namespace
+
+std::vector<BuiltinScene> builtin_scenes() {
+    std::vector<BuiltinScene> list;
+    for (const Recipe& recipe : kRecipes) list.push_back(recipe.scene);
+    return list;
+}
+
+Scene make_builtin_scene(std::string_view name) {
+    std::string known;
+    for (const Recipe& recipe : kRecipes) {
+        if (recipe.scene.name == name) return recipe.make();
+        known += (known.empty() ? "" : ", ") + std::string(recipe.scene.name);
+    }
+    throw Error(ErrorKind::kScene,
+                fmt::format("builtin:{}: there is no such built-in scene; there are {}", name, known));
+}
+
+}  // namespace pentaprism

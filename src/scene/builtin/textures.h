@@ -1,0 +1,26 @@
+#pragma once
+// Procedural textures, 8-bit sRGB with alpha, at most 512 texels wide.
+
+#include <pentaprism/scene.h>
+
+namespace pentaprism::builtin {
+
+/// Two linear colours in `squares` x `squares` fields with hard edges.
+Image checker_texture(std::string name, int size, int squares, glm::dvec3 dark, glm::dvec3 light);
+
+/// Grey furrows along v, to be tinted by vertex colours.
+Image bark_texture();
+
+/// Grey crumbs and flecks, repeating, to be tinted by vertex colours.
+Image litter_texture();
+
+/// A pale midrib (u = 0.5) with side veins, nearly white: to be tinted by vertex colours. v runs from stalk to tip.
+Image leaf_texture();
+
+/// An insect's wing, u from leading to trailing edge, v from root to tip: dark veins around clear cells (low alpha).
+Image wing_texture(std::string name, glm::dvec3 membrane, glm::dvec3 vein, double membrane_alpha);
+
+/// 8-bit sRGB code of a linear value in [0, 1].
+std::uint8_t srgb_code(double linear);
+
+}  // namespace pentaprism::builtin
