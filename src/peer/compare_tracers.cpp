@@ -1,10 +1,11 @@
 #include "peer/compare_tracers.h"
 
+#include <pentaprism/error.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <mutex>
-#include <pentaprism/error.h>
 #include <tuple>
 
 #include "base/parallel.h"
@@ -23,9 +24,10 @@ class Subset {
   public:
     Subset(std::int64_t wanted, std::int64_t samples)
         : all_(wanted >= samples),
-          threshold_(samples > 0 ? static_cast<std::uint64_t>(std::ldexp(static_cast<double>(std::min(wanted, samples)) /
-                                                                              static_cast<double>(samples), 63))
-                                 : 0) {}
+          threshold_(samples > 0
+                         ? static_cast<std::uint64_t>(std::ldexp(
+                               static_cast<double>(std::min(wanted, samples)) / static_cast<double>(samples), 63))
+                         : 0) {}
     bool contains(std::uint64_t sample) const { return all_ || (scatter(sample + 1) >> 1) < threshold_; }
 
   private:
@@ -97,7 +99,8 @@ class TileComparison {
         const PlacedSample sample = place_sample(frame_.view, table_, claim.px, claim.py, claim.index);
         const ExactHit exact = cover_in_double(frame_, claim.triangle, sample);
         if (exact.hit()) {
-            findings.worst_depth_error = std::max(findings.worst_depth_error, relative_difference(claim.depth, exact.depth));
+            findings.worst_depth_error =
+                std::max(findings.worst_depth_error, relative_difference(claim.depth, exact.depth));
         }
     }
 
@@ -134,7 +137,9 @@ class Tally {
     const std::function<void(const Verdict&)>& on_wrong_;
 };
 
-bool same_sample(const Claim& a, const Claim& b) { return a.px == b.px && a.py == b.py && a.index == b.index; }
+bool same_sample(const Claim& a, const Claim& b) {
+    return a.px == b.px && a.py == b.py && a.index == b.index;
+}
 
 bool before(const Claim& a, const Claim& b) {
     return std::tie(a.py, a.px, a.index) < std::tie(b.py, b.px, b.index);
@@ -162,7 +167,8 @@ VerifyReport compare_tracers(const Frame& frame, const SampleTable& table, const
     const auto advance = [&](double from, double to, std::size_t n) {
         const std::lock_guard<std::mutex> lock(mutex);
         ++done;
-        if (progress && !stopped && !progress(from + (to - from) * static_cast<double>(done) / static_cast<double>(n))) {
+        if (progress && !stopped &&
+            !progress(from + (to - from) * static_cast<double>(done) / static_cast<double>(n))) {
             stopped = true;
         }
     };
@@ -205,7 +211,8 @@ VerifyReport compare_tracers(const Frame& frame, const SampleTable& table, const
     if (stopped) throw Error(ErrorKind::kRender, "interrupted");
     report.brute_force_samples = static_cast<std::int64_t>(exact.size());
     for (const Verdict& verdict : exact) {
-        const bool differs = verdict.claim.triangle != verdict.truth.triangle || verdict.depth_difference > kDepthTolerance;
+        const bool differs =
+            verdict.claim.triangle != verdict.truth.triangle || verdict.depth_difference > kDepthTolerance;
         if (differs) ++report.brute_force_disagreements;
         const auto known = std::lower_bound(disagreements.begin(), disagreements.end(), verdict.claim, before);
         if (differs && (known == disagreements.end() || !same_sample(*known, verdict.claim))) {
@@ -214,7 +221,8 @@ VerifyReport compare_tracers(const Frame& frame, const SampleTable& table, const
             report.worst_depth_error = std::max(report.worst_depth_error, verdict.depth_difference);
         }
     }
-    report.per_million = report.samples ? 1e6 * static_cast<double>(report.ours_wrong) / static_cast<double>(report.samples) : 0.0;
+    report.per_million =
+        report.samples ? 1e6 * static_cast<double>(report.ours_wrong) / static_cast<double>(report.samples) : 0.0;
     return report;
 }
 

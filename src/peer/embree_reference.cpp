@@ -2,10 +2,10 @@
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
+#include <pentaprism/error.h>
 
 #include <cmath>
 #include <map>
-#include <pentaprism/error.h>
 #include <vector>
 
 #include "base/parallel.h"
@@ -40,8 +40,9 @@ struct Point3 {
 void check(RTCDevice device) {
     const RTCError error = rtcGetDeviceError(device);
     if (error != RTC_ERROR_NONE) {
-        throw Error(ErrorKind::kBackend, fmt::format("Embree refuses this frame (error {}); render without the reference",
-                                                     static_cast<int>(error)));
+        throw Error(
+            ErrorKind::kBackend,
+            fmt::format("Embree refuses this frame (error {}); render without the reference", static_cast<int>(error)));
     }
 }
 
@@ -60,7 +61,9 @@ bool can_be_trusted(const Frame& frame, const Part& part, std::uint32_t triangle
 }
 
 /// A power of two that brings pixels times metres near metres: Embree's error bounds assume axes of one scale. Exact.
-float axis_scale(const View& view) { return static_cast<float>(std::exp2(-std::round(std::log2(std::max(view.fx, 1e-6))))); }
+float axis_scale(const View& view) {
+    return static_cast<float>(std::exp2(-std::round(std::log2(std::max(view.fx, 1e-6)))));
+}
 
 }  // namespace
 
@@ -288,8 +291,12 @@ class EmbreeReference::Impl {
 EmbreeReference::EmbreeReference(const Frame& frame, const SampleTable& table, const EmbreeOptions& options)
     : impl_(std::make_unique<Impl>(frame, table, options)) {}
 EmbreeReference::~EmbreeReference() = default;
-void EmbreeReference::trace(const Tile& tile, Hits& hits) const { impl_->trace(tile, hits); }
+void EmbreeReference::trace(const Tile& tile, Hits& hits) const {
+    impl_->trace(tile, hits);
+}
 
-std::string embree_version() { return "embree " RTC_VERSION_STRING; }
+std::string embree_version() {
+    return "embree " RTC_VERSION_STRING;
+}
 
 }  // namespace pentaprism

@@ -1,5 +1,6 @@
 #pragma once
-// Who is right? Samples on which the renderer and a reference disagree are decided in double precision over the whole scene.
+// Who is right? Samples on which the renderer and a reference disagree are decided in double precision over the whole
+// scene.
 
 #include <cstdint>
 #include <span>
@@ -26,9 +27,9 @@ struct Claim {
 struct Verdict {
     Claim claim;
     ExactHit truth;
-    bool wrong = false;           ///< double precision is against the claim
-    bool depth_tie = false;       ///< the claimed surface is another than the truth's, but no further off than kDepthTie
-    double margin = 0.0;          ///< pixels to the nearest outline of the triangles concerned (claimed and true)
+    bool wrong = false;      ///< double precision is against the claim
+    bool depth_tie = false;  ///< the claimed surface is another than the truth's, but no further off than kDepthTie
+    double margin = 0.0;     ///< pixels to the nearest outline of the triangles concerned (claimed and true)
     double depth_difference = 0.0;  ///< relative, claimed against true depth; +infinity when one of them is no hit
     /// Beyond what the rounding of a float test explains: such a sample is a defect of the renderer.
     bool away_from_edge() const { return wrong && margin > kEdgeTolerance && depth_difference > kDepthTolerance; }

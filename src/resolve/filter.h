@@ -9,7 +9,8 @@ namespace pentaprism {
 /// 0.5 (box), 1 (tent), 1.5 (gaussian, blackman-harris) pixels.
 double filter_radius(Filter filter);
 
-/// h(d); 0 beyond the radius.
+/// h(d); 0 from the radius on, except the box, which is 1 up to 0.5 inclusive: a sample on a pixel's border is one of
+/// its own.
 double filter_weight(Filter filter, double d);
 
 /// How many pixels away a pixel's samples still count: 0 for the box, else 1.

@@ -1,13 +1,15 @@
 #pragma once
-// A glTF file as it was read: its JSON, its buffers, and checked access to both. Every number, index and range that the readers of
-// meshes, materials, nodes... use comes through here, so that a broken file ends in one message and never in a bad read.
+// A glTF file as it was read: its JSON, its buffers, and checked access to both. Every number, index and range that the
+// readers of meshes, materials, nodes... use comes through here, so that a broken file ends in one message and never in
+// a bad read.
+
+#include <pentaprism/scene.h>
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <pentaprism/scene.h>
 #include <set>
 #include <span>
 #include <string>
@@ -19,8 +21,8 @@ using Json = nlohmann::json;
 
 struct Document;
 
-/// One JSON object and its place in the file, as messages name it ("accessor 12"). Getters return `fallback` for an absent member and
-/// throw Error(kScene) for one of the wrong type or range.
+/// One JSON object and its place in the file, as messages name it ("accessor 12"). Getters return `fallback` for an
+/// absent member and throw Error(kScene) for one of the wrong type or range.
 class Object {
   public:
     Object(const Document& document, const Json& json, std::string where);
@@ -66,8 +68,8 @@ struct View {
 };
 
 struct Document {
-    std::string name;               ///< file name, first in every message
-    std::filesystem::path folder;   ///< where relative URIs start
+    std::string name;              ///< file name, first in every message
+    std::filesystem::path folder;  ///< where relative URIs start
     Json json;
     std::vector<std::uint8_t> binary_chunk;  ///< of a .glb
     bool has_binary_chunk = false;
@@ -104,7 +106,7 @@ struct Accessor {
     int components = 1;      ///< 1 to 4, or 4, 9, 16 for matrices
     int component_type = 0;  ///< 5120 to 5126
     bool normalized = false;
-    std::string type;        ///< "VEC3"
+    std::string type;  ///< "VEC3"
     std::string where;
 };
 
@@ -118,7 +120,8 @@ std::vector<float> read_floats(const Document& document, Index accessor);
 std::vector<std::uint32_t> read_integers(const Document& document, Index accessor);
 
 /// Throws unless the accessor has one of the types ("VEC3"...).
-void require_type(const Document& document, Index accessor, std::initializer_list<const char*> types, const std::string& what);
+void require_type(const Document& document, Index accessor, std::initializer_list<const char*> types,
+                  const std::string& what);
 
 inline bool all_finite(std::span<const float> values) {
     for (const float value : values) {

@@ -5,8 +5,8 @@
 
 namespace pentaprism::gltf {
 
-/// From a camera's EXT_cameras_sensor, else from the `extras` of the camera or of the node that holds it. What is already set in `lens` is kept, so
-/// call it for the camera first.
+/// From a camera's EXT_cameras_sensor, else from the `extras` of the camera or of the node that holds it. What is
+/// already set in `lens` is kept, so call it for the camera first.
 void read_lens(Document& document, const Object& camera_or_node, LensInfo& lens);
 
 }  // namespace pentaprism::gltf

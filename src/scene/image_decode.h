@@ -1,8 +1,9 @@
 #pragma once
 // Pictures for materials, from the bytes of a PNG, JPEG or another file format to 8-bit RGBA.
 
-#include <cstdint>
 #include <pentaprism/scene.h>
+
+#include <cstdint>
 #include <span>
 #include <string>
 

@@ -13,9 +13,6 @@ namespace {
 double srgb_to_linear(double x) {
     return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
 }
-double linear_to_srgb(double x) {
-    return x <= 0.0031308 ? x * 12.92 : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
-}
 
 using Codes = std::array<float, 256>;
 

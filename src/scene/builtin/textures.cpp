@@ -58,6 +58,35 @@ Image bark_texture() {
     });
 }
 
+Image litter_texture() {
+    constexpr int kFlecks = 420;
+    struct Fleck {
+        glm::dvec2 centre, along;
+        double width, shade;
+    };
+    Random random(3);
+    std::vector<Fleck> flecks;
+    for (int i = 0; i < kFlecks; ++i) {
+        const double x = random.uniform(), y = random.uniform(), a = random.angle(), length = random.range(0.01, 0.035);
+        flecks.push_back({{x, y}, {std::cos(a) * length, std::sin(a) * length}, random.range(0.25, 0.6), random.range(0.35, 1.0)});
+    }
+    return paint("litter", 256, 256, [&](double u, double v) {
+        const auto crumbs = [](double x, double y) { return fractal_noise({24.0 * x, 24.0 * y}, 4); };
+        const double a = glm::mix(crumbs(u, v), crumbs(u - 1.0, v), u);
+        const double b = glm::mix(crumbs(u, v - 1.0), crumbs(u - 1.0, v - 1.0), u);
+        double shade = 0.35 + 0.55 * glm::smoothstep(0.3, 0.7, glm::mix(a, b, v));
+        for (const Fleck& fleck : flecks) {  // the last one lies on top
+            const glm::dvec2 d = glm::dvec2(u, v) - fleck.centre;
+            const glm::dvec2 nearest = d - glm::round(d);
+            const double size = glm::dot(fleck.along, fleck.along);
+            const double s = glm::dot(nearest, fleck.along) / size;
+            const double t = (nearest.x * fleck.along.y - nearest.y * fleck.along.x) / size;
+            if (std::abs(t) < fleck.width * (1.0 - s * s)) shade = fleck.shade * (0.9 + 0.2 * std::abs(t));
+        }
+        return glm::dvec4(glm::dvec3(shade), 1.0);
+    });
+}
+
 Image leaf_texture() {
     return paint("leaf", 128, 128, [](double u, double v) {
         const double x = std::abs(2.0 * u - 1.0);

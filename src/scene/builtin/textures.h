@@ -11,6 +11,9 @@ Image checker_texture(std::string name, int size, int squares, glm::dvec3 dark, 
 /// Grey furrows along v, to be tinted by vertex colours.
 Image bark_texture();
 
+/// Grey crumbs and flecks, repeating, to be tinted by vertex colours.
+Image litter_texture();
+
 /// A pale midrib (u = 0.5) with side veins, nearly white: to be tinted by vertex colours. v runs from stalk to tip.
 Image leaf_texture();
 
