@@ -3,20 +3,19 @@
 
 #include "scene/obj_reader.h"
 
-#include <fmt/format.h>
-#include <pentaprism/error.h>
-#include <tiny_obj_loader.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <fmt/format.h>
 #include <fstream>
 #include <glm/geometric.hpp>
 #include <map>
 #include <new>
+#include <pentaprism/error.h>
 #include <sstream>
 #include <stdexcept>
+#include <tiny_obj_loader.h>
 
 #include "scene/mtl_reader.h"
 #include "scene/polygon.h"
