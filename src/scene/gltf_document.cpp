@@ -13,8 +13,10 @@ constexpr const char* kRootPlace = "the file";
 constexpr std::size_t kLargestSize = std::size_t{1} << 48;
 
 constexpr std::size_t kMostWarnings = 100;
-/// Numbers that all accessors together may become: a small file can name the same large accessor a million times.
-constexpr std::size_t kMostComponents = std::size_t{1} << 31;
+/// Numbers that all accessors together may become: a small file can name the same large accessor a million times. Many
+/// primitives sharing one vertex buffer are common, hence the factor.
+constexpr std::size_t kFreeComponents = std::size_t{1} << 26;
+constexpr std::size_t kComponentsPerByte = 64;
 
 }  // namespace
 
@@ -30,7 +32,11 @@ void Document::warn(const std::string& what) {
 
 void Document::spend(std::size_t components) const {
     decoded += components;
-    if (decoded > kMostComponents) fail("holds more data than can be read (the same accessors are used too often)");
+    std::size_t bytes = 0;
+    for (const Buffer& buffer : buffers) bytes += buffer.bytes.size();
+    if (decoded > kFreeComponents + kComponentsPerByte * bytes) {
+        fail("holds more data than can be read (the same accessors are used too often)");
+    }
 }
 
 std::size_t Document::count(const char* list) const {
