@@ -350,14 +350,14 @@ void add_far_bank(Assembly& pond) {
     Random random(37);
     Material glint = painted("glitter");
     glint.base_color = {0.0f, 0.0f, 0.0f, 1.0f};
-    glint.emissive = {26.0f, 21.0f, 13.0f};
+    glint.emissive = {8.0f, 6.2f, 3.4f};
     MeshBuilder s;
     s.ellipsoid(glm::dvec3(0.0), glm::dvec3(1.0), 6, 4);
     const Index mesh = pond.add_mesh("glitter", s.take(pond.add(glint)));
     for (int k = 0; k < 60; ++k) {
         const double depth = 0.5 + 2.8 * std::pow(random.uniform(), 1.3);
         const double x = random.around(-0.12 * depth, 0.22 * depth);
-        const double size = 0.00062 * std::sqrt(depth) * random.range(0.6, 1.3);
+        const double size = 0.0042 * (depth - kFocus) * random.range(0.5, 1.1);
         const Index node =
             pond.add_node("glitter", kNone, {{x, 0.006, 0.22 - depth}, {1.0, 0.0, 0.0, 0.0}, glm::dvec3(size)}, mesh);
         const double phase = random.angle(), rate = random.range(4.0, 8.0);

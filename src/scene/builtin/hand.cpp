@@ -208,7 +208,7 @@ void add_hand(Assembly& scene) {
 void add_city_lights(Assembly& scene) {
     Random random(5);
     const glm::vec3 colors[] = {
-        {22.0f, 11.0f, 3.5f}, {20.0f, 15.0f, 9.0f}, {18.0f, 2.2f, 1.2f}, {3.0f, 9.0f, 20.0f}, {2.5f, 14.0f, 9.0f}};
+        {6.0f, 2.8f, 0.7f}, {5.0f, 3.6f, 2.0f}, {5.5f, 0.5f, 0.25f}, {0.7f, 2.2f, 5.5f}, {0.5f, 3.6f, 2.2f}};
     std::vector<Index> meshes;
     for (const glm::vec3& color : colors) {
         Material light = painted("city light");
@@ -223,7 +223,7 @@ void add_city_lights(Assembly& scene) {
         // Dense along a street near the horizon, sparse above it.
         const double height = k < 60 ? random.around(-0.09, 0.10) : random.range(-0.05, 0.36);
         const glm::dvec3 at{random.around(0.0, 0.58 * depth), height * depth, 0.5 - depth};
-        Transform placed{at, {1.0, 0.0, 0.0, 0.0}, glm::dvec3(0.0016 * depth * random.range(0.7, 1.25))};
+        Transform placed{at, {1.0, 0.0, 0.0, 0.0}, glm::dvec3(0.0046 * (depth - 0.5) * random.range(0.7, 1.2))};
         const int color = k < 60 ? random.below(5) : random.below(2);
         scene.add_node("city light", kNone, placed, meshes[std::size_t(color)]);
     }
