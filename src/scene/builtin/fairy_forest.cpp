@@ -373,9 +373,9 @@ void add_fireflies(Assembly& forest) {
                             0.05 + 0.33 * depth * std::pow(random.uniform(), 1.3) + 0.03 * depth, 0.62 - depth};
         const glm::dvec3 swing = 0.05 * random.direction();
         const double phase = random.angle();
-        const Index node =
-            forest.add_node("firefly", kNone, placed(at, 0.0, (0.0012 + 0.0048 * (depth - kFocus)) * random.range(0.75, 1.2)),
-                            meshes[std::size_t(k % 5 == 4 ? 2 : k % 2)]);
+        const Index node = forest.add_node(
+            "firefly", kNone, placed(at, 0.0, (0.0012 + 0.0048 * (depth - kFocus)) * random.range(0.75, 1.2)),
+            meshes[std::size_t(k % 5 == 4 ? 2 : k % 2)]);
         forest.animate_translation(node, 9, [=](double t) {
             return at + swing * std::sin(1.9 * t + phase) +
                    glm::dvec3(0.0, 0.02 * std::sin(2.7 * t + 2.0 * phase), 0.0);

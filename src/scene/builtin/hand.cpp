@@ -180,7 +180,7 @@ void add_hand(Assembly& scene) {
 
     const Index skin_material = scene.add(painted("skin", 0.48));
     const Index nail_material = scene.add(painted("nail", 0.25));
-    Primitive body = ImplicitBody(limbs(), 0.75).polygonize(0.41, skin_material, true);
+    Primitive body = ImplicitBody(limbs(), 0.75).polygonize(0.418, skin_material, true);
     add_creases(body);
     std::vector<Primitive> parts;
     parts.push_back(std::move(body));
@@ -229,6 +229,25 @@ void add_city_lights(Assembly& scene) {
     }
 }
 
+/// Dusk over the roofs: a wall of colour far behind.
+void add_dusk(Assembly& scene) {
+    Material sky;
+    sky.name = "dusk";
+    sky.unlit = true;
+    sky.double_sided = true;
+    MeshBuilder m;
+    m.surface(
+        12, 20, [](double u, double v) { return glm::dvec3(-9.0 + 18.0 * u, -4.5 + 9.0 * v, -8.0); },
+        [](double u, double v, glm::dvec3) {
+            const glm::dvec3 street{0.020, 0.016, 0.024}, glow{0.20, 0.065, 0.045}, violet{0.045, 0.028, 0.085},
+                night{0.006, 0.012, 0.034};
+            const glm::dvec3 above = glm::mix(violet, night, glm::smoothstep(0.52, 0.78, v));
+            const glm::dvec3 horizon = glm::mix(glow * (0.55 + 0.6 * u), above, glm::smoothstep(0.42, 0.60, v));
+            return glm::mix(street, horizon, glm::smoothstep(0.30, 0.43, v));
+        });
+    scene.add_node("dusk", kNone, {}, scene.add_mesh("dusk", m.take(scene.add(sky))));
+}
+
 void add_camera_and_light(Assembly& scene) {
     const Index camera = scene.add_camera("close", {}, {35.0, 2.6, 0.5, 0.5, 0});
     const auto eye = [](double t) { return glm::dvec3(0.012 * (t - 1.0), 0.01, 0.5); };
@@ -246,6 +265,7 @@ Scene hand() {
     Assembly scene("builtin:hand", kDuration);
     add_camera_and_light(scene);
     add_hand(scene);
+    add_dusk(scene);
     add_city_lights(scene);
     return scene.take({0.008f, 0.013f, 0.030f});
 }
