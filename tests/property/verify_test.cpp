@@ -86,7 +86,7 @@ TEST_P(References, AgreeWithTheRendererButForRoundingAtEdges) {
         const Visibility visibility(frame, table, {}, {0, frame.view.width, 0, frame.view.height});
         const Reference reference = make_reference(frame, table);
         CompareOptions options;
-        options.on_wrong = expect_near_edge;
+        options.on_disagreement = expect_near_edge;
         const VerifyReport report = compare_tracers(frame, table, renderer(visibility), reference.tracer, options);
         samples += report.samples;
         wrong += report.ours_wrong;
@@ -132,7 +132,7 @@ TEST(Comparison, JudgesSliversAndTrianglesAcrossTheCameraPlaneByTheirDistanceInP
             const SampleTable table(16, seed, frame.view.lens, grouping_for(frame));
             const Reference reference = make_reference(frame, table);
             CompareOptions options;
-            options.on_wrong = expect_right_triangle;
+            options.on_disagreement = expect_right_triangle;
             const VerifyReport report =
                 compare_tracers(frame, table, scalar_tracer(frame, table), reference.tracer, options);
             EXPECT_LE(report.ours_wrong, 3);
