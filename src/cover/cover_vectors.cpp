@@ -217,12 +217,13 @@ void write_hits(TileState& state, const LocalTriangle& T, std::size_t count) {
             const Mask tied = hn::And(in.tied, D.in_segment);
             if (HWY_UNLIKELY(!hn::AllFalse(f, tied))) hit = hn::Or(hit, decide_ties(f, state, T, s, lane, block, tied, depth));
             state.counts.covered += static_cast<std::int64_t>(hn::CountTrue(f, hit));
-            const Vec stored = hn::Load(f, depths + lane);
+            // Hits are ordinary vectors: not aligned.
+            const Vec stored = hn::LoadU(f, depths + lane);
             hit = hn::And(hit, hn::Lt(depth, stored));
             if (T.alpha_tested && !hn::AllFalse(f, hit)) hit = decide_opacity(f, state, T, E, sum, lane, block, slot, hit);
             const Vec nearest = hn::IfThenElse(hit, depth, stored);
-            hn::Store(nearest, f, depths + lane);
-            hn::Store(hn::IfThenElse(hn::RebindMask(u, hit), hn::Set(u, T.triangle), hn::Load(u, triangles + lane)), u, triangles + lane);
+            hn::StoreU(nearest, f, depths + lane);
+            hn::StoreU(hn::IfThenElse(hn::RebindMask(u, hit), hn::Set(u, T.triangle), hn::LoadU(u, triangles + lane)), u, triangles + lane);
             farthest = hn::Max(farthest, nearest);
         }
         state.farthest[job] = hn::GetLane(hn::MaxOfLanes(f, farthest));
