@@ -112,8 +112,8 @@ class TileComparison {
 /// Sums verdicts into a report.
 class Tally {
   public:
-    Tally(VerifyReport& report, const std::function<void(const Verdict&)>& on_wrong)
-        : report_(report), on_wrong_(on_wrong) {}
+    Tally(VerifyReport& report, const std::function<void(const Verdict&)>& on_disagreement)
+        : report_(report), on_disagreement_(on_disagreement) {}
 
     void add(const Verdict& verdict) {
         ++report_.disagreements;
@@ -121,6 +121,7 @@ class Tally {
         if (verdict.claim.triangle == verdict.truth.triangle && verdict.truth.hit()) {
             report_.worst_depth_error = std::max(report_.worst_depth_error, verdict.depth_difference);
         }
+        if (on_disagreement_) on_disagreement_(verdict);
         if (!verdict.wrong) return;
         ++report_.ours_wrong;
         if (verdict.away_from_edge()) ++report_.away_from_edge;
@@ -128,12 +129,11 @@ class Tally {
         if (verdict.depth_difference > kDepthTolerance) {
             report_.worst_margin = std::max(report_.worst_margin, verdict.margin);
         }
-        if (on_wrong_) on_wrong_(verdict);
     }
 
   private:
     VerifyReport& report_;
-    const std::function<void(const Verdict&)>& on_wrong_;
+    const std::function<void(const Verdict&)>& on_disagreement_;
 };
 
 bool same_sample(const Claim& a, const Claim& b) {
@@ -193,7 +193,7 @@ VerifyReport compare_tracers(const Frame& frame, const SampleTable& table, const
     }
 
     const Judge judge(frame, table);
-    Tally tally(report, options.on_wrong);
+    Tally tally(report, options.on_disagreement);
     for (const Verdict& verdict : judge.judge(disagreements)) tally.add(verdict);
 
     // The subset meets every triangle of the scene, with no prefilter. A sample is counted once.

@@ -16,7 +16,7 @@ struct CompareOptions {
     int tile_size = 32;
     std::int64_t brute_force_samples =
         20000;  ///< about so many samples, spread by a hash, meet every triangle in double
-    std::function<void(const Verdict&)> on_wrong;  ///< called for each wrong sample, in the order of tiles
+    std::function<void(const Verdict&)> on_disagreement;  ///< called for each one, in order of tiles
 };
 
 /// Traces the whole picture with `ours` and, if it is not empty, with `reference`. Fills the numbers of the report;

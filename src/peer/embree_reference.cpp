@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "frame/opacity.h"
 #include "peer/brute_force.h"
 
 namespace pentaprism {
@@ -69,7 +70,7 @@ float axis_scale(const View& view) {
 class EmbreeReference::Impl {
   public:
     Impl(const Frame& frame, const SampleTable& table, const EmbreeOptions& options)
-        : frame_(frame), table_(table), scale_(axis_scale(frame.view)) {
+        : frame_(frame), table_(table), scale_(axis_scale(frame.view)), for_speed_(options.for_speed) {
         const std::string configuration =
             fmt::format("threads={}{}{}", thread_count(), options.device.empty() ? "" : ",", options.device);
         device_ = rtcNewDevice(configuration.c_str());
@@ -102,7 +103,7 @@ class EmbreeReference::Impl {
 
     void build(const EmbreeOptions& options) {
         scene_ = rtcNewScene(device_);
-        if (options.robust) rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+        if (!options.for_speed) rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
         rtcSetSceneBuildQuality(scene_, options.fast_build ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM);
         std::map<GroupKey, Group> groups;
         for (std::uint32_t i = 0; i < frame_.parts.size(); ++i) {
@@ -113,7 +114,7 @@ class EmbreeReference::Impl {
                                                              "--motion-segments",
                                                              kMaxSegments, part.segments));
             }
-            const bool asks = !part.two_sided || part.alpha_mode != AlphaMode::kOpaque;
+            const bool asks = (!part.two_sided && !for_speed_) || part.alpha_mode != AlphaMode::kOpaque;
             Group& group = groups[{knots, asks}];
             group.asks = asks;
             group.parts.push_back(i);
@@ -248,24 +249,40 @@ class EmbreeReference::Impl {
     static void filter(const RTCFilterFunctionNArguments* arguments) {
         const Group& group = *static_cast<const Group*>(arguments->geometryUserPtr);
         const auto& context = *static_cast<const Context*>(arguments->context);
-        const Frame& frame = context.self->frame_;
         const unsigned n = arguments->N;
         for (unsigned i = 0; i < n; ++i) {
             if (arguments->valid[i] != -1) continue;
             const std::uint32_t triangle = group.triangles[RTCHitN_primID(arguments->hit, n, i)];
-            const Part& part = frame.parts[frame.part_of[triangle]];
-            const bool front = RTCHitN_Ng_x(arguments->hit, n, i) * RTCRayN_dir_x(arguments->ray, n, i) +
-                                   RTCHitN_Ng_y(arguments->hit, n, i) * RTCRayN_dir_y(arguments->ray, n, i) +
-                                   RTCHitN_Ng_z(arguments->hit, n, i) * RTCRayN_dir_z(arguments->ray, n, i) >
-                               0.0f;
-            const int lane = static_cast<int>(RTCRayN_id(arguments->ray, n, i));
-            if ((!front && !part.two_sided) || !is_opaque(frame, triangle, context.self->placed(context, lane))) {
-                arguments->valid[i] = 0;
-            }
+            const bool hit = context.self->for_speed_ ? is_hit_quick(context, *arguments, i, triangle)
+                                                      : is_hit(context, *arguments, i, triangle);
+            if (!hit) arguments->valid[i] = 0;
         }
     }
 
-    PlacedSample placed(const Context& context, int lane) const {
+    static bool is_hit(const Context& context, const RTCFilterFunctionNArguments& arguments, unsigned i,
+                       std::uint32_t triangle) {
+        const Frame& frame = context.self->frame_;
+        const unsigned n = arguments.N;
+        const bool front = RTCHitN_Ng_x(arguments.hit, n, i) * RTCRayN_dir_x(arguments.ray, n, i) +
+                               RTCHitN_Ng_y(arguments.hit, n, i) * RTCRayN_dir_y(arguments.ray, n, i) +
+                               RTCHitN_Ng_z(arguments.hit, n, i) * RTCRayN_dir_z(arguments.ray, n, i) >
+                           0.0f;
+        if (!front && !frame.parts[frame.part_of[triangle]].two_sided) return false;
+        return is_opaque(frame, triangle, context.self->placed(context, RTCRayN_id(arguments.ray, n, i)));
+    }
+
+    static bool is_hit_quick(const Context& context, const RTCFilterFunctionNArguments& arguments, unsigned i,
+                             std::uint32_t triangle) {
+        const float u = RTCHitN_u(arguments.hit, arguments.N, i), v = RTCHitN_v(arguments.hit, arguments.N, i);
+        const float barycentrics[3] = {1.0f - u - v, u, v};
+        const int lane = static_cast<int>(RTCRayN_id(arguments.ray, arguments.N, i));
+        return is_opaque_at(context.self->frame_, triangle, barycentrics, context.bx * kBlockSize + lane % kBlockSize,
+                            context.by * kBlockSize + lane / kBlockSize, context.indices[lane],
+                            context.self->table_.spp());
+    }
+
+    PlacedSample placed(const Context& context, unsigned id) const {
+        const int lane = static_cast<int>(id);
         const SampleVector& v = *context.vector;
         const int column = lane % kBlockSize, row = lane / kBlockSize;
         // From the block's corner, y up, to the pixel's corner, y down: exact on the lattice of 1/256.
@@ -282,6 +299,7 @@ class EmbreeReference::Impl {
     const Frame& frame_;
     const SampleTable& table_;
     float scale_;
+    bool for_speed_;
     RTCDevice device_ = nullptr;
     RTCScene scene_ = nullptr;
     std::vector<Group> groups_;

@@ -17,7 +17,9 @@ namespace pentaprism {
 
 /// How Embree is set up. The defaults are for verification.
 struct EmbreeOptions {
-    bool robust = true;       ///< watertight traversal and intersection, at a price
+    /// Embree's fastest: no robust mode, back faces of one-sided surfaces are hit, too (refusing them would cost Embree
+    /// a callback for each hit), and masks are asked at Embree's own barycentrics.
+    bool for_speed = false;
     bool fast_build = false;  ///< Embree's low build quality
     std::string device;       ///< configuration string, such as "tri_accel_mb=bvh8.triangle4vmb"
 };

@@ -72,8 +72,10 @@ Verdict Judge::compare(const Claim& claim, const ExactHit& truth) const {
         if (claims_hit && truth.hit()) {
             // Both cover the sample and only their order is in question: then depth decides, as far as floats can.
             const ExactHit claimed = cover_in_double(frame_, claim.triangle, sample);
-            verdict.depth_tie = claimed.hit() && is_opaque(frame_, claim.triangle, sample) &&
-                                relative_difference(claimed.depth, truth.depth) <= kDepthTie;
+            if (claimed.hit() && is_opaque(frame_, claim.triangle, sample)) {
+                verdict.tie_gap = relative_difference(claimed.depth, truth.depth);
+                verdict.depth_tie = verdict.tie_gap <= kDepthTie;
+            }
             verdict.wrong = !verdict.depth_tie || verdict.depth_difference > kDepthTolerance;
         }
     }

@@ -88,7 +88,7 @@ class Contest {
             if (*device && !moves) continue;
             for (const bool fast_build : {false, true}) {
                 EmbreeOptions options;
-                options.robust = false;
+                options.for_speed = true;
                 options.fast_build = fast_build;
                 options.device = device;
                 const double sum = run_embree(options).sum();

@@ -1,11 +1,14 @@
 // The comparison that `verify` rests on: it agrees with a right renderer, names a wrong one, and the references agree.
 
+#include <algorithm>
+#include <cstdlib>
 #include <gtest/gtest.h>
 #include <pentaprism/error.h>
 
 #include "bound/local_triangle.h"
 #include "cover/exact.h"
 #include "peer/reference.h"
+#include "render/visibility.h"
 #include "support/random_frame.h"
 
 namespace pentaprism {
@@ -56,9 +59,12 @@ TileTracer scalar_tracer(const Frame& frame, const SampleTable& table) {
     };
 }
 
-Grouping grouping_of(const Frame& frame) {
-    const bool defocus = !frame.view.lens.pinhole(), motion = frame.parts[0].moves;
-    return motion ? (defocus ? Grouping::kBoth : Grouping::kMotion) : (defocus ? Grouping::kDefocus : Grouping::kStill);
+/// The renderer's visibility, every stage of it.
+TileTracer renderer(const Visibility& visibility) {
+    return [&](const Tile& tile, Hits& hits) {
+        CoverCounts counts;
+        visibility.cover(tile, hits, counts);
+    };
 }
 
 /// Fails the test, saying what is wrong, for a sample that rounding does not explain.
@@ -72,16 +78,16 @@ void expect_near_edge(const Verdict& verdict) {
 
 class References : public ::testing::TestWithParam<RandomFrame> {};
 
-TEST_P(References, AgreeWithTheExactTestButForRoundingAtEdges) {
+TEST_P(References, AgreeWithTheRendererButForRoundingAtEdges) {
     std::int64_t samples = 0, wrong = 0;
-    for (std::uint32_t seed = 0; seed < 4; ++seed) {
+    for (std::uint32_t seed = 0; seed < 8; ++seed) {
         const Frame frame = testing::make_random_frame(GetParam(), seed);
-        const SampleTable table(16, seed, frame.view.lens, grouping_of(frame));
+        const SampleTable table(16, seed, frame.view.lens, grouping_for(frame));
+        const Visibility visibility(frame, table, {}, {0, frame.view.width, 0, frame.view.height});
         const Reference reference = make_reference(frame, table);
         CompareOptions options;
-        options.on_wrong = expect_near_edge;
-        const VerifyReport report =
-            compare_tracers(frame, table, scalar_tracer(frame, table), reference.tracer, options);
+        options.on_disagreement = expect_near_edge;
+        const VerifyReport report = compare_tracers(frame, table, renderer(visibility), reference.tracer, options);
         samples += report.samples;
         wrong += report.ours_wrong;
         EXPECT_LE(report.worst_margin, kEdgeTolerance);
@@ -123,10 +129,10 @@ TEST(Comparison, JudgesSliversAndTrianglesAcrossTheCameraPlaneByTheirDistanceInP
                                       })}) {
         for (std::uint32_t seed = 0; seed < 3; ++seed) {
             const Frame frame = testing::make_random_frame(wanted, seed);
-            const SampleTable table(16, seed, frame.view.lens, grouping_of(frame));
+            const SampleTable table(16, seed, frame.view.lens, grouping_for(frame));
             const Reference reference = make_reference(frame, table);
             CompareOptions options;
-            options.on_wrong = expect_right_triangle;
+            options.on_disagreement = expect_right_triangle;
             const VerifyReport report =
                 compare_tracers(frame, table, scalar_tracer(frame, table), reference.tracer, options);
             EXPECT_LE(report.ours_wrong, 3);
@@ -232,6 +238,41 @@ TEST(Comparison, StopsWhenToldTo) {
     const SampleTable table(4, 0, frame.view.lens, Grouping::kBoth);
     EXPECT_THROW(compare_tracers(frame, table, scalar_tracer(frame, table), {}, {}, [](double) { return false; }),
                  Error);
+}
+
+RenderSettings small_and_blurred() {
+    RenderSettings settings;
+    settings.image.width = 128;
+    settings.image.height = 96;
+    settings.camera.fstop = 2.8;
+    return settings;
+}
+
+void expect_right(const VerifyReport& report) {
+    EXPECT_EQ(report.samples, 128 * 96 * 16) << report.scene;
+    EXPECT_LE(report.ours_wrong, 1) << report.scene;
+    EXPECT_EQ(report.away_from_edge, 0) << report.scene;
+    EXPECT_GT(report.brute_force_samples, 100) << report.scene;
+    EXPECT_NE(report.reference.find("brute force"), std::string::npos);
+}
+
+TEST(Verify, FindsTheRendererRightOnTheSmallestBuiltInScene) {
+    const std::vector<BuiltinScene> scenes = builtin_scenes();
+    const auto smallest =
+        std::min_element(scenes.begin(), scenes.end(),
+                         [](const BuiltinScene& a, const BuiltinScene& b) { return a.triangles < b.triangles; });
+    ASSERT_NE(smallest, scenes.end());
+    expect_right(verify_frame(make_builtin_scene(smallest->name), small_and_blurred(), 5));
+}
+
+TEST(Verify, FindsTheRendererRightOnRealScenes) {
+    const char* folder = std::getenv("PENTAPRISM_SCENES");
+    if (!folder) GTEST_SKIP() << "PENTAPRISM_SCENES is not set";
+    for (const char* file :
+         {"khronos/CesiumMan/CesiumMan.glb", "khronos/Fox/Fox.glb", "hand/hand.glb",
+          "khronos/AlphaBlendModeTest/AlphaBlendModeTest.glb", "khronos/NegativeScaleTest/NegativeScaleTest.glb"}) {
+        expect_right(verify_frame(load_scene(std::string(folder) + "/" + file), small_and_blurred(), 5));
+    }
 }
 
 }  // namespace
