@@ -1,17 +1,16 @@
 // `pentaprism render SCENE -o OUT`: frames to pictures.
 
+#include <chrono>
+#include <filesystem>
 #include <fmt/format.h>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <pentaprism/error.h>
 #include <pentaprism/frames.h>
 #include <pentaprism/image.h>
 #include <pentaprism/metadata.h>
 #include <pentaprism/render.h>
 #include <unistd.h>
-
-#include <chrono>
-#include <filesystem>
-#include <memory>
-#include <nlohmann/json.hpp>
 
 #include "commands.h"
 #include "interrupt.h"
@@ -120,12 +119,12 @@ std::string to_text(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-RenderStats render_to_file(const Scene& scene, const RenderCommand& command, std::int64_t frame, const fs::path& file,
+RenderStats render_to_file(Renderer& renderer, const RenderCommand& command, std::int64_t frame, const fs::path& file,
                            const FileMetadata& metadata, const Progress& progress) {
     const auto writer = make_picture_writer(file, command.settings.image, metadata);
     TimedSink sink(*writer);
     RenderStats stats;
-    render_frame(scene, command.settings, static_cast<double>(frame), sink, stats, progress);
+    renderer.render(command.settings, static_cast<double>(frame), sink, stats, progress);
     throw_if_interrupted();
     sink.finish();
     stats.times_ms["write"] = sink.milliseconds();
@@ -150,6 +149,7 @@ int render(RenderCommand& command) {
     const bool stats_for_each_frame = has_frame_number(command.stats);
     Json all_stats = Json::array();
     ProgressReporter progress(command.verbosity, command.frames.size());
+    Renderer renderer(scene);
     for (const std::int64_t frame : command.frames) {
         const fs::path file = frame_file(command.out, frame);
         if (command.skip_existing && fs::exists(file)) {
@@ -157,7 +157,7 @@ int render(RenderCommand& command) {
             continue;
         }
         progress.begin_frame(frame);
-        RenderStats stats = render_to_file(scene, command, frame, file, metadata, progress.callback());
+        RenderStats stats = render_to_file(renderer, command, frame, file, metadata, progress.callback());
         stats.times_ms["load"] = load_ms;
         if (!command.stats.empty()) {
             Json json = to_json(stats, command, frame, scene.name);

@@ -1,11 +1,10 @@
 #include "peer/compare_tracers.h"
 
-#include <pentaprism/error.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <mutex>
+#include <pentaprism/error.h>
 #include <tuple>
 
 #include "base/parallel.h"

@@ -1,9 +1,8 @@
 #pragma once
 // Two ways to find the visible triangle of every sample, compared sample by sample, and every difference judged.
 
-#include <pentaprism/verify.h>
-
 #include <functional>
+#include <pentaprism/verify.h>
 
 #include "cover/hits.h"
 #include "peer/judge.h"

@@ -1,11 +1,10 @@
 #include "peer/embree_reference.h"
 
+#include <cmath>
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
-#include <pentaprism/error.h>
-
-#include <cmath>
 #include <map>
+#include <pentaprism/error.h>
 #include <vector>
 
 #include "base/parallel.h"

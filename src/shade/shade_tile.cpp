@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
-#include "cover/exact.h"
 #include "bound/local_triangle.h"
+#include "cover/exact.h"
 #include "shade/sample_order.h"
 #include "shade/shaded_triangle.h"
 

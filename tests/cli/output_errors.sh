@@ -33,7 +33,7 @@ check "no .part is left" test ! -e big.exr.part
 
 # A real full file system, where a small one can be mounted.
 mkdir disk
-if mount -t tmpfs -o size=64k tmpfs disk 2>/dev/null; then
+if mount -t tmpfs -o size=16k tmpfs disk 2>/dev/null; then
     trap 'umount "$work/disk"; rm -rf "$work"' EXIT
     refuses 4 'disk/a.exr: cannot write \(No space left on device\)' render builtin:cubes -o disk/a.exr -r 256x256 -s 1 --progress none
     check "the full disk is empty again" test -z "$(ls -A disk)"

@@ -106,10 +106,10 @@ Result draw(const Drawing& drawing, const SampleTable& table, const Picked& pick
 }
 
 std::optional<glm::vec3> noise(int px, int py, int index) {
-    std::mt19937 random(static_cast<std::uint32_t>((py * 4096 + px) * 64 + index));
-    std::uniform_real_distribution<float> color(0.0f, 3.0f);
-    if (random() % 3 == 0) return std::nullopt;
-    return glm::vec3(color(random), color(random), color(random));
+    std::uint32_t hash = static_cast<std::uint32_t>((py * 4096 + px) * 64 + index) * 0x9e3779b1u;
+    hash = (hash ^ (hash >> 15)) * 0x846ca68bu;
+    if (hash % 3 == 0) return std::nullopt;
+    return glm::vec3(hash >> 24, hash >> 16 & 255, hash >> 8 & 255) / 85.0f;
 }
 
 TEST(Film, AConstantPictureStaysConstant) {

@@ -53,7 +53,7 @@ void add_ground(Assembly& forest) {
     const Index index = forest.add(soil);
     MeshBuilder m;
     m.surface(
-        110, 84,
+        100, 78,
         [](double u, double v) {
             // Finer near the camera: the grid's rows lie closer together there.
             const double z = 0.75 - 8.0 * std::pow(v, 1.9);
@@ -168,7 +168,7 @@ void add_trees(Assembly& forest) {
     const TreeKind cherry = make_tree_kind(forest, "cherry", random, {0.17, 0.10, 0.09}, {0.010f, 0.008f, 0.008f},
                                            {6, 150, 0.085, 0.06, 0.03}, kBlossom, bark, leaf);
     const TreeKind far = make_tree_kind(forest, "far tree", random, {0.09, 0.10, 0.10}, {0.006f, 0.018f, 0.022f},
-                                        {4, 80, 0.17, 0.09, 0.04}, kFarLeaves, bark, leaf);
+                                        {4, 70, 0.18, 0.095, 0.04}, kFarLeaves, bark, leaf);
 
     // Two trunks frame the picture; the rest leave a clearing towards the light.
     add_tree(forest, random, near, on_ground(-0.66, -0.42), 1.55, 7, 0.42);
@@ -201,7 +201,7 @@ void add_undergrowth(Assembly& forest) {
     std::vector<Index> tufts;
     for (int i = 0; i < 3; ++i) {
         MeshBuilder grass;
-        add_grass_tuft(grass, random, 22, 1.0, kGrass);
+        add_grass_tuft(grass, random, 20, 1.0, kGrass);
         tufts.push_back(forest.add_mesh("grass tuft", grass.take(material)));
     }
     // Near tufts sway one by one; those in the distance are instances of one node.
@@ -224,7 +224,7 @@ void add_undergrowth(Assembly& forest) {
         }
     }
     MeshBuilder clover;
-    for (int k = 0; k < 20; ++k) {
+    for (int k = 0; k < 17; ++k) {
         const glm::dvec2 at = 0.5 * random.in_disk();
         const glm::dvec3 top{at.x, random.range(0.08, 0.2), at.y};
         const double a = random.angle();

@@ -47,6 +47,30 @@ Image checker_texture(std::string name, int size, int squares, glm::dvec3 dark, 
     });
 }
 
+Image stripe_texture(std::string name, int size, int stripes, glm::dvec3 dark, glm::dvec3 light) {
+    return paint(std::move(name), size, size, [&](double u, double v) {
+        const bool odd = (static_cast<int>((u + v) * 2 * stripes) & 1) != 0;
+        return glm::dvec4(odd ? light : dark, 1.0);
+    });
+}
+
+Image target_texture(std::string name, int size, int rings, glm::dvec3 dark, glm::dvec3 light) {
+    return paint(std::move(name), size, size, [&](double u, double v) {
+        const double r = 2.1 * glm::length(glm::dvec2(u - 0.5, v - 0.5));
+        const bool odd = r < 1.0 && (static_cast<int>(r * 2 * rings) & 1) == 0;
+        return glm::dvec4(odd ? light : dark, 1.0);
+    });
+}
+
+Image soft_spot_texture(std::string name, glm::dvec3 color, double alpha) {
+    return paint(std::move(name), 64, 64, [&](double u, double v) {
+        const double x = 2.0 * u - 1.0, y = 2.0 * v - 1.0;
+        const double fall =
+            (1.0 - glm::smoothstep(0.45, 1.0, std::abs(x))) * (1.0 - glm::smoothstep(0.3, 1.0, std::abs(y)));
+        return glm::dvec4(color, alpha * fall);
+    });
+}
+
 Image bark_texture() {
     return paint("bark", 128, 256, [](double u, double v) {
         // Noise on a cylinder, cut at a meridian: mixing the two ends makes it repeat in u and in v.
@@ -59,7 +83,7 @@ Image bark_texture() {
 }
 
 Image litter_texture() {
-    constexpr int kFlecks = 420;
+    constexpr int kFlecks = 260;
     struct Fleck {
         glm::dvec2 centre, along;
         double width, shade;
@@ -68,7 +92,8 @@ Image litter_texture() {
     std::vector<Fleck> flecks;
     for (int i = 0; i < kFlecks; ++i) {
         const double x = random.uniform(), y = random.uniform(), a = random.angle(), length = random.range(0.01, 0.035);
-        flecks.push_back({{x, y}, {std::cos(a) * length, std::sin(a) * length}, random.range(0.25, 0.6), random.range(0.35, 1.0)});
+        flecks.push_back(
+            {{x, y}, {std::cos(a) * length, std::sin(a) * length}, random.range(0.25, 0.6), random.range(0.35, 1.0)});
     }
     return paint("litter", 256, 256, [&](double u, double v) {
         const auto crumbs = [](double x, double y) { return fractal_noise({24.0 * x, 24.0 * y}, 4); };
