@@ -346,18 +346,29 @@ std::uint64_t blocks_at_camera_plane(const LocalTriangle& T, const CullTest& tes
     return kept;
 }
 
-// Step 2: the (block, slot) pairs that may hit and are not hidden.
+// Step 2: the (block, slot) pairs that may hit and are not hidden. How many bits a mask has is unpredictable, so bits are
+// written out eight at a time, wanted or not; what is hidden is dropped in a second pass without branches.
 HWY_NOINLINE std::size_t list_jobs(TileState& state, const std::uint64_t* masks, std::uint64_t blocks, float nearest) {
     const std::size_t slots = static_cast<std::size_t>(state.work.samples.slots());
-    const float* HWY_RESTRICT farthest = state.farthest.data();
     Job* HWY_RESTRICT jobs = state.jobs.data();
+    std::size_t listed = 0;
+    for (const SampleTable::Stratum& s : state.strata) {
+        std::uint64_t m = masks[s.stratum] & s.blocks & blocks;
+        if (m == 0) continue;
+        const std::size_t end = listed + static_cast<std::size_t>(std::popcount(m));
+        do {
+            for (int k = 0; k < 8; ++k, m &= m - 1) jobs[listed + k] = {static_cast<std::uint16_t>(std::countr_zero(m)), s.slot};
+            listed += 8;
+        } while (m != 0);
+        listed = end;
+    }
+    const float* HWY_RESTRICT farthest = state.farthest.data();
     std::size_t count = 0;
-    for (const SampleTable::Stratum& s : state.strata)
-        for (std::uint64_t m = masks[s.stratum] & s.blocks & blocks; m != 0; m &= m - 1) {
-            const std::uint16_t block = static_cast<std::uint16_t>(std::countr_zero(m));
-            jobs[count] = {block, s.slot};
-            count += nearest <= farthest[block * slots + s.slot];
-        }
+    for (std::size_t j = 0; j < listed; ++j) {
+        const Job job = jobs[j];
+        jobs[count] = job;
+        count += nearest <= farthest[job.block * slots + job.slot];
+    }
     return count;
 }
 
@@ -460,7 +471,7 @@ void cover_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
         state.block_samples[b] = work.samples.block(left / kBlockSize + b % kCellBlocks, top / kBlockSize + b / kCellBlocks).data();
     }
     state.farthest.assign(static_cast<std::size_t>(kBlocksPerCell) * slots, INFINITY);
-    state.jobs.resize(static_cast<std::size_t>(kBlocksPerCell) * slots + 1);
+    state.jobs.resize(static_cast<std::size_t>(kBlocksPerCell) * slots + 8);  // list_jobs writes up to 7 beyond
     state.survivors.resize(state.jobs.size());
 
     // Pixels beyond the tile's border take no hits: nothing is nearer than -infinity.
