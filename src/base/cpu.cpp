@@ -1,8 +1,7 @@
 #include "base/cpu.h"
 
-#include <hwy/targets.h>
-
 #include <cstdlib>
+#include <hwy/targets.h>
 #include <pentaprism/error.h>
 
 namespace pentaprism {
@@ -14,10 +13,14 @@ bool has(Isa isa) {
 #else
     static const auto targets = hwy::SupportedTargets();  // asks the processor, which is slow on virtual machines
     switch (isa) {
-        case Isa::kScalar: return true;
-        case Isa::kNeon: return (targets & HWY_NEON) != 0;
-        case Isa::kAvx2: return (targets & HWY_AVX2) != 0;
-        case Isa::kAvx512: return (targets & HWY_AVX3) != 0;
+        case Isa::kScalar:
+            return true;
+        case Isa::kNeon:
+            return (targets & HWY_NEON) != 0;
+        case Isa::kAvx2:
+            return (targets & HWY_AVX2) != 0;
+        case Isa::kAvx512:
+            return (targets & HWY_AVX3) != 0;
     }
     return false;
 #endif
@@ -27,10 +30,14 @@ bool has(Isa isa) {
 
 const char* isa_name(Isa isa) {
     switch (isa) {
-        case Isa::kScalar: return "scalar";
-        case Isa::kNeon: return "neon";
-        case Isa::kAvx2: return "avx2";
-        case Isa::kAvx512: return "avx512";
+        case Isa::kScalar:
+            return "scalar";
+        case Isa::kNeon:
+            return "neon";
+        case Isa::kAvx2:
+            return "avx2";
+        case Isa::kAvx512:
+            return "avx512";
     }
     return "scalar";
 }
@@ -41,7 +48,8 @@ Isa cpu_isa() {
         for (const Isa isa : kBestFirst) {
             if (std::string(wanted) != isa_name(isa)) continue;
             if (has(isa)) return isa;
-            throw Error(ErrorKind::kUsage, std::string("PENTAPRISM_ISA=") + wanted + ": this processor or build does not have it");
+            throw Error(ErrorKind::kUsage,
+                        std::string("PENTAPRISM_ISA=") + wanted + ": this processor or build does not have it");
         }
         throw Error(ErrorKind::kUsage,
                     std::string("PENTAPRISM_ISA=") + wanted + ": unknown; it takes avx512, avx2, neon or scalar");

@@ -1,14 +1,13 @@
 #include "base/parallel.h"
 
-#include <tbb/global_control.h>
-#include <tbb/info.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <memory>
 #include <mutex>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
 
 namespace pentaprism {
 namespace {
@@ -42,7 +41,9 @@ int thread_count() {
     return requested > 0 ? requested : default_thread_count();
 }
 
-void set_thread_count(int threads) { requested_threads.store(std::max(0, threads)); }
+void set_thread_count(int threads) {
+    requested_threads.store(std::max(0, threads));
+}
 
 void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body) {
     parallel_ranges(n, 1, [&](std::size_t begin, std::size_t end) {
@@ -53,9 +54,10 @@ void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body) {
 void parallel_ranges(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body) {
     if (n == 0) return;
     apply_limit();
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, std::max<std::size_t>(1, grain)),
-                      [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); },
-                      tbb::simple_partitioner());
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, n, std::max<std::size_t>(1, grain)),
+        [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); },
+        tbb::simple_partitioner());
 }
 
 }  // namespace pentaprism

@@ -20,7 +20,8 @@ bool is_usable(const MovingTriangle& m) {
     return true;
 }
 
-void bound_triangle(const Frame& frame, std::uint32_t triangle, const PixelRect& limits, std::vector<BinnedTriangle>& out) {
+void bound_triangle(const Frame& frame, std::uint32_t triangle, const PixelRect& limits,
+                    std::vector<BinnedTriangle>& out) {
     const Part& part = frame.parts[frame.part_of[triangle]];
     const View& view = frame.view;
     for (int segment = 0; segment < (part.moves ? part.segments : 1); ++segment) {
@@ -69,7 +70,8 @@ Bins::Bins(const Frame& frame, int tile_size, const PixelRect& limits)
             const int y0 = std::max(row0, t.y0 / tile_size_), y1 = std::min(row1, (t.y1 - 1) / tile_size_ + 1);
             const int x0 = t.x0 / tile_size_, x1 = (t.x1 - 1) / tile_size_ + 1;
             for (int y = y0; y < y1; ++y)
-                for (int x = x0; x < x1; ++x) visit(static_cast<std::size_t>(y - first_y_) * columns_ + (x - first_x_), i);
+                for (int x = x0; x < x1; ++x)
+                    visit(static_cast<std::size_t>(y - first_y_) * columns_ + (x - first_x_), i);
         }
     };
     offsets_.assign(tiles + 1, 0);
@@ -85,7 +87,8 @@ Bins::Bins(const Frame& frame, int tile_size, const PixelRect& limits)
 }
 
 std::span<const std::uint32_t> Bins::tile(int x0, int y0) const {
-    const std::size_t tile = static_cast<std::size_t>(y0 / tile_size_ - first_y_) * columns_ + (x0 / tile_size_ - first_x_);
+    const std::size_t tile =
+        static_cast<std::size_t>(y0 / tile_size_ - first_y_) * columns_ + (x0 / tile_size_ - first_x_);
     return std::span(entries_).subspan(offsets_[tile], offsets_[tile + 1] - offsets_[tile]);
 }
 

@@ -25,7 +25,8 @@ Facing facing(const MovingTriangle& m, double ratio) {
     double size_x = 0, size_y = 0, size_w = 0;
     bool still = true, sharp = true;
     for (int i = 0; i < 3; ++i) {
-        still = still && m.x[i][0] == m.x[i][1] && m.y[i][0] == m.y[i][1] && m.w[i][0] == m.w[i][1] && m.c[i][0] == m.c[i][1];
+        still = still && m.x[i][0] == m.x[i][1] && m.y[i][0] == m.y[i][1] && m.w[i][0] == m.w[i][1] &&
+                m.c[i][0] == m.c[i][1];
         for (int end = 0; end < 2; ++end) {
             const double c = std::abs(m.c[i][end]);
             sharp = sharp && c == 0.0;

@@ -13,8 +13,8 @@ CellCentre cell_centre(const View& view, int cx, int cy) {
 
 LocalSample local_sample(const SamplePoint& sample, int px, int py) {
     constexpr float half = kCellSize / 2;
-    return {static_cast<float>(px % kCellSize) - half + sample.x, half - (static_cast<float>(py % kCellSize) + sample.y),
-            sample.u, sample.v, sample.t};
+    return {static_cast<float>(px % kCellSize) - half + sample.x,
+            half - (static_cast<float>(py % kCellSize) + sample.y), sample.u, sample.v, sample.t};
 }
 
 LocalTriangle localize(const Frame& frame, std::uint32_t triangle, int segment, const CellCentre& centre) {
@@ -35,8 +35,8 @@ LocalTriangle localize(const Frame& frame, std::uint32_t triangle, int segment, 
         local.dw[i] = static_cast<float>(dw);
         local.dc[i] = static_cast<float>(dc);
         local.dz[i] = static_cast<float>(dz);
-        // The end of the path as the exact test computes it counts, too: rounding dw may put it behind the camera plane when
-        // the vertex comes from very far.
+        // The end of the path as the exact test computes it counts, too: rounding dw may put it behind the camera plane
+        // when the vertex comes from very far.
         const float end_w = local.qw[i] + local.dw[i];
         local.behind = local.behind || std::min({m.w[i][0], m.w[i][1], end_w}) < frame.view.w_near();
     }

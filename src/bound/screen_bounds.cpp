@@ -26,7 +26,8 @@ void add(ScreenBox& box, const Point& p, double ratio) {
 ScreenBox screen_bounds(const MovingTriangle& triangle, double w_near, double ratio) {
     Point points[6];
     for (int i = 0; i < 6; ++i)
-        points[i] = {triangle.x[i / 2][i % 2], triangle.y[i / 2][i % 2], triangle.w[i / 2][i % 2], triangle.c[i / 2][i % 2]};
+        points[i] = {triangle.x[i / 2][i % 2], triangle.y[i / 2][i % 2], triangle.w[i / 2][i % 2],
+                     triangle.c[i / 2][i % 2]};
     ScreenBox box;
     bool all_in_front = true;
     for (const Point& p : points) {
@@ -45,10 +46,11 @@ ScreenBox screen_bounds(const MovingTriangle& triangle, double w_near, double ra
             }
     }
     if (box.empty()) return box;
-    // The sheared test's terms are no larger than the unsheared ones plus the distance to the cell times w, and the cell is
-    // within the picture wherever a sample is: the scale below bounds both.
+    // The sheared test's terms are no larger than the unsheared ones plus the distance to the cell times w, and the
+    // cell is within the picture wherever a sample is: the scale below bounds both.
     double scale_x = 0.0, scale_y = 0.0, farthest_w = 0.0;
-    const double reach_x = std::max(std::abs(box.x0), std::abs(box.x1)), reach_y = std::max(std::abs(box.y0), std::abs(box.y1));
+    const double reach_x = std::max(std::abs(box.x0), std::abs(box.x1)),
+                 reach_y = std::max(std::abs(box.y0), std::abs(box.y1));
     for (const Point& p : points) {
         const double w = std::abs(p.w);
         farthest_w = std::max(farthest_w, w);

@@ -45,7 +45,8 @@ double depth_at_pixel(const Scene& scene, const Pose& pose, const View& view, do
         for (std::size_t i = 0; i < positions.size(); ++i)
             clip[i] = to_raster_clip(view, glm::dvec3(to_camera * glm::dvec4(positions[i], 1.0)));
         for (std::size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
-            const glm::dvec4 p[3] = {clip[primitive.indices[i]], clip[primitive.indices[i + 1]], clip[primitive.indices[i + 2]]};
+            const glm::dvec4 p[3] = {clip[primitive.indices[i]], clip[primitive.indices[i + 1]],
+                                     clip[primitive.indices[i + 2]]};
             double e[3], dx[3], dy[3];
             for (int k = 0; k < 3; ++k) {
                 dx[k] = p[k].x - gx * p[k].z;

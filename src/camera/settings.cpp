@@ -1,12 +1,11 @@
 // What RenderSettings may hold, and the settings as JSON for a picture's header.
 
+#include <cmath>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <pentaprism/error.h>
 #include <pentaprism/metadata.h>
 #include <pentaprism/settings.h>
-
-#include <cmath>
-#include <nlohmann/json.hpp>
 
 namespace pentaprism {
 namespace {

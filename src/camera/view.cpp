@@ -21,13 +21,14 @@ Index find_camera_node(const Scene& scene, const std::string& wanted) {
     };
     if (wanted.empty()) {
         for (Index c = 0; c < static_cast<Index>(scene.cameras.size()); ++c)
-            if (const Index n = node_with_camera([&](const Node& node) { return node.camera == c; }); n != kNone) return n;
+            if (const Index n = node_with_camera([&](const Node& node) { return node.camera == c; }); n != kNone)
+                return n;
         return kNone;
     }
-    Index found = node_with_camera([&](const Node& node) {
-        return node.name == wanted || scene.cameras[node.camera].name == wanted;
-    });
-    if (found == kNone && wanted.size() < 9 && std::all_of(wanted.begin(), wanted.end(), [](char c) { return c >= '0' && c <= '9'; })) {
+    Index found = node_with_camera(
+        [&](const Node& node) { return node.name == wanted || scene.cameras[node.camera].name == wanted; });
+    if (found == kNone && wanted.size() < 9 &&
+        std::all_of(wanted.begin(), wanted.end(), [](char c) { return c >= '0' && c <= '9'; })) {
         const Index index = std::stoi(wanted);
         found = node_with_camera([&](const Node& node) { return node.camera == index; });
     }
@@ -35,7 +36,8 @@ Index find_camera_node(const Scene& scene, const std::string& wanted) {
         std::string names;
         for (const Node& node : scene.nodes)
             if (node.visible && node.camera != kNone)
-                names += (names.empty() ? "" : ", ") + (node.name.empty() ? scene.cameras[node.camera].name : node.name);
+                names +=
+                    (names.empty() ? "" : ", ") + (node.name.empty() ? scene.cameras[node.camera].name : node.name);
         throw Error(ErrorKind::kUsage, scene.name + ": no camera '" + wanted + "'" +
                                            (names.empty() ? "; the scene has none" : "; there are: " + names));
     }
@@ -54,7 +56,8 @@ void frame_scene(const Scene& scene, std::span<const Index> animations, View& vi
     const double shorter_side = std::min(1.0, static_cast<double>(view.width) / view.height);
     const double distance = radius / std::sin(std::atan(std::tan(half_angle) * shorter_side));
     const glm::dvec3 direction = glm::normalize(glm::dvec3(0.45, 0.3, 1.0));
-    view.fixed_world_to_camera = glm::lookAt(box.centre() + distance * direction, box.centre(), glm::dvec3(0.0, 1.0, 0.0));
+    view.fixed_world_to_camera =
+        glm::lookAt(box.centre() + distance * direction, box.centre(), glm::dvec3(0.0, 1.0, 0.0));
     view.fx = view.fy = 0.5 * view.height / std::tan(half_angle);
     view.depth_near = std::max(distance * 1e-3, distance - 1.5 * radius);
     view.depth_far = distance + 4.0 * radius;
@@ -88,19 +91,22 @@ double focus_distance(const Scene& scene, const CameraSettings& settings, const 
     if (settings.focus_distance) return *settings.focus_distance;
     if (!settings.focus_object.empty()) {
         const Index node = find_node(scene, settings.focus_object);
-        if (node == kNone) throw Error(ErrorKind::kUsage, scene.name + ": no node '" + settings.focus_object + "' to focus on");
+        if (node == kNone)
+            throw Error(ErrorKind::kUsage, scene.name + ": no node '" + settings.focus_object + "' to focus on");
         const Box3 box = bounding_box(scene, pose, node);
         const glm::dvec3 centre = box.empty() ? glm::dvec3(pose.world[node][3]) : box.centre();
         const double depth = -(world_to_camera(view, pose) * glm::dvec4(centre, 1.0)).z;
         if (!(depth > 0.0))
-            throw Error(ErrorKind::kUsage, scene.name + ": node '" + settings.focus_object + "' is behind the camera, it cannot be in focus");
+            throw Error(ErrorKind::kUsage, scene.name + ": node '" + settings.focus_object +
+                                               "' is behind the camera, it cannot be in focus");
         return depth;
     }
     if (settings.focus_pixel) {
         const auto [x, y] = *settings.focus_pixel;
         const double depth = depth_at_pixel(scene, pose, view, x, y);
         if (!std::isfinite(depth))
-            throw Error(ErrorKind::kUsage, scene.name + ": nothing is seen at --focus-pixel; give a pixel that shows a surface");
+            throw Error(ErrorKind::kUsage,
+                        scene.name + ": nothing is seen at --focus-pixel; give a pixel that shows a surface");
         return depth;
     }
     if (info.focus_distance) return *info.focus_distance;
@@ -119,7 +125,8 @@ void resolve_lens(const Scene& scene, const CameraSettings& settings, const Lens
         lens.radius = *settings.lens_radius;
     } else if (settings.fstop || (info.fstop && view.perspective)) {
         if (!view.perspective)
-            throw Error(ErrorKind::kUsage, "an orthographic camera has no focal length, so no f-stop: give --lens-radius");
+            throw Error(ErrorKind::kUsage,
+                        "an orthographic camera has no focal length, so no f-stop: give --lens-radius");
         lens.fstop = settings.fstop ? *settings.fstop : *info.fstop;
         lens.radius = view.focal_length_mm * 1e-3 / (2.0 * lens.fstop);
     }
@@ -182,7 +189,8 @@ View make_view(const Scene& scene, const RenderSettings& settings, double frame)
     if (settings.camera.focal_length_mm && view.perspective)
         view.fx = view.fy = *settings.camera.focal_length_mm * view.width / sensor_width_mm;
     view.shutter = resolve_shutter(settings, info, frame);
-    resolve_lens(scene, settings.camera, info, sensor_width_mm, evaluate(scene, animations, view.shutter.middle()), view);
+    resolve_lens(scene, settings.camera, info, sensor_width_mm, evaluate(scene, animations, view.shutter.middle()),
+                 view);
     return view;
 }
 

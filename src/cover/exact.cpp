@@ -6,8 +6,9 @@
 namespace pentaprism {
 namespace {
 
-// The triangle as the sample's lens position and time place it, relative to the sample's ray (docs/develop/algorithms.md,
-// 1.5): the sample is covered when the origin lies in the triangle (X_i, Y_i) and in front of the camera.
+// The triangle as the sample's lens position and time place it, relative to the sample's ray
+// (docs/develop/algorithms.md, 1.5): the sample is covered when the origin lies in the triangle (X_i, Y_i) and in front
+// of the camera.
 struct Deltas {
     float x[3], y[3], w[3], z[3];
     bool in_segment;

@@ -1,11 +1,12 @@
 // improved-dual-space: bilinear bounds in (u, t) and (v, t) over a footprint of the screen.
 //
 // Laine & Karras 2011, Improved Dual-Space Bounds for Simultaneous Motion and Defocus Blur. For one vertex
-// X(gx,u,t) = x(t) + u*c(t) - gx*w(t) is affine in each of gx, u and t. A sample can only hit if max X_i >= 0 >= min X_i
-// (docs/develop/algorithms.md 1.5). With the footprint's middle gc and half width hg, the corner value over the
+// X(gx,u,t) = x(t) + u*c(t) - gx*w(t) is affine in each of gx, u and t. A sample can only hit if max X_i >= 0 >= min
+// X_i (docs/develop/algorithms.md 1.5). With the footprint's middle gc and half width hg, the corner value over the
 // footprint is X(gc) + hg*|w| at most, and interpolating the maxima over the vertices at the four (u,t) corners bounds
-// max X_i inside. No division, valid for every sign of w and c. We evaluate the corners directly for each footprint instead of
-// interpolating slices of the triangle's whole extent as printed: it is tighter, and needs no guard for empty ranges.
+// max X_i inside. No division, valid for every sign of w and c. We evaluate the corners directly for each footprint
+// instead of interpolating slices of the triangle's whole extent as printed: it is tighter, and needs no guard for
+// empty ranges.
 
 #include <algorithm>
 #include <cmath>
@@ -71,7 +72,8 @@ float scale(const Axis& axis, float lens) {
     float largest = 0;
     for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 2; ++k)
-            largest = std::max(largest, std::abs(axis.p[i][k]) + lens * std::abs(axis.c[i][k]) + 17.0f * std::abs(axis.w[i][k]));
+            largest = std::max(largest,
+                               std::abs(axis.p[i][k]) + lens * std::abs(axis.c[i][k]) + 17.0f * std::abs(axis.w[i][k]));
     return largest;
 }
 
@@ -97,12 +99,13 @@ bool prepare(const LocalTriangle& T, const Footprint& footprint, CullState& stat
             x.w[i][k] = y.w[i][k] = std::fma(tau, T.dw[i], T.qw[i]);
             x.c[i][k] = y.c[i][k] = std::fma(tau, T.dc[i], T.qc[i]);
         }
-    const float lens_u = std::max(std::abs(domain.u0), std::abs(domain.u1)), lens_v = std::max(std::abs(domain.v0), std::abs(domain.v1));
-    const Corners cx = corners(x, domain.u0, domain.u1, 0.5f * (footprint.x0 + footprint.x1), 0.5f * (footprint.x1 - footprint.x0),
-                               32.0f * kUnitRoundoff * scale(x, lens_u));
+    const float lens_u = std::max(std::abs(domain.u0), std::abs(domain.u1)),
+                lens_v = std::max(std::abs(domain.v0), std::abs(domain.v1));
+    const Corners cx = corners(x, domain.u0, domain.u1, 0.5f * (footprint.x0 + footprint.x1),
+                               0.5f * (footprint.x1 - footprint.x0), 32.0f * kUnitRoundoff * scale(x, lens_u));
     if (refused(cx)) return false;
-    const Corners cy = corners(y, domain.v0, domain.v1, 0.5f * (footprint.y0 + footprint.y1), 0.5f * (footprint.y1 - footprint.y0),
-                               32.0f * kUnitRoundoff * scale(y, lens_v));
+    const Corners cy = corners(y, domain.v0, domain.v1, 0.5f * (footprint.y0 + footprint.y1),
+                               0.5f * (footprint.y1 - footprint.y0), 32.0f * kUnitRoundoff * scale(y, lens_v));
     if (refused(cy)) return false;
 
     Slices& slices = reinterpret_cast<Slices&>(state);
@@ -122,14 +125,17 @@ bool prepare(const LocalTriangle& T, const Footprint& footprint, CullState& stat
 
 bool keeps(const CullState& state, const LocalSample& sample) {
     const Slices& slices = reinterpret_cast<const Slices&>(state);
-    const float u = std::fma(sample.u, slices.u_scale, slices.u_shift), v = std::fma(sample.v, slices.v_scale, slices.v_shift);
+    const float u = std::fma(sample.u, slices.u_scale, slices.u_shift),
+                v = std::fma(sample.v, slices.v_scale, slices.v_shift);
     const float t = std::fma(sample.t, slices.t_scale, slices.t_shift);
-    return slices.x_max.at(u, t) >= 0 && slices.x_min.at(u, t) <= 0 && slices.y_max.at(v, t) >= 0 && slices.y_min.at(v, t) <= 0;
+    return slices.x_max.at(u, t) >= 0 && slices.x_min.at(u, t) <= 0 && slices.y_max.at(v, t) >= 0 &&
+           slices.y_min.at(v, t) <= 0;
 }
 
 }  // namespace
 
 extern const CullTest improved_dual_space_test;
-const CullTest improved_dual_space_test{"improved-dual-space", "Laine & Karras 2011, Improved Dual-Space Bounds", prepare, keeps};
+const CullTest improved_dual_space_test{"improved-dual-space", "Laine & Karras 2011, Improved Dual-Space Bounds",
+                                        prepare, keeps};
 
 }  // namespace pentaprism

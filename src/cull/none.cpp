@@ -5,8 +5,12 @@
 namespace pentaprism {
 namespace {
 
-bool prepare(const LocalTriangle&, const Footprint&, CullState&) { return true; }
-bool keeps(const CullState&, const LocalSample&) { return true; }
+bool prepare(const LocalTriangle&, const Footprint&, CullState&) {
+    return true;
+}
+bool keeps(const CullState&, const LocalSample&) {
+    return true;
+}
 
 }  // namespace
 

@@ -82,7 +82,9 @@ class Path {
         return points;
     }
 
-    bool stands_still() { return at(0.0) == at(0.25) && at(0.0) == at(0.5) && at(0.0) == at(0.75) && at(0.0) == at(1.0); }
+    bool stands_still() {
+        return at(0.0) == at(0.25) && at(0.0) == at(0.5) && at(0.0) == at(0.75) && at(0.0) == at(1.0);
+    }
 
     // Errors are asked at the quarters of each segment: at the middle alone, an S-shaped path would look straight.
     bool is_straight_with(int segments) {
@@ -118,13 +120,14 @@ struct PosedPart {
 void append_knot(const View& view, const ClipPoints& knot, PosedPart& posed) {
     for (const glm::dvec4& p : knot) {
         const double c = view.lens.a + view.lens.b * p.w;
-        posed.points.emplace_back(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z), static_cast<float>(c));
+        posed.points.emplace_back(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z),
+                                  static_cast<float>(c));
         if (!view.perspective) posed.depths.push_back(static_cast<float>(p.w));
     }
 }
 
-PosedPart pose_part(const Scene& scene, const View& view, const Placement& placement, const Pose& middle, Moments& moments,
-                    bool shutter_open, const ShutterSettings& settings) {
+PosedPart pose_part(const Scene& scene, const View& view, const Placement& placement, const Pose& middle,
+                    Moments& moments, bool shutter_open, const ShutterSettings& settings) {
     const Primitive& primitive = scene.meshes[placement.mesh].primitives[placement.primitive];
     PosedPart posed;
     Part& part = posed.part;
@@ -156,7 +159,8 @@ std::array<std::uint32_t, 3> Frame::vertices(std::uint32_t triangle) const {
     return {corner[0] - part.first_point, corner[1] - part.first_point, corner[2] - part.first_point};
 }
 
-Frame pose_frame(const Scene& scene, const View& view, std::span<const Index> animations, const ShutterSettings& settings) {
+Frame pose_frame(const Scene& scene, const View& view, std::span<const Index> animations,
+                 const ShutterSettings& settings) {
     Frame frame;
     frame.scene = &scene;
     frame.view = view;
@@ -187,7 +191,8 @@ Frame pose_frame(const Scene& scene, const View& view, std::span<const Index> an
     parallel_for(posed.size(), [&](std::size_t i) {
         const Part& part = frame.parts[i];
         std::copy(posed[i].points.begin(), posed[i].points.end(), frame.points.begin() + part.first_point);
-        std::copy(posed[i].depths.begin(), posed[i].depths.end(), frame.depths.begin() + (view.perspective ? 0 : part.first_point));
+        std::copy(posed[i].depths.begin(), posed[i].depths.end(),
+                  frame.depths.begin() + (view.perspective ? 0 : part.first_point));
         const auto& indices = scene.meshes[part.placement.mesh].primitives[part.placement.primitive].indices;
         for (std::uint32_t t = 0; t < part.triangle_count; ++t) {
             std::uint32_t* corner = &frame.corners[3 * std::size_t{part.first_triangle + t}];

@@ -2,14 +2,13 @@
 //
 //   scene -> view, frame -> bins -> [ tile: cover -> shade -> film ] -> rows
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <mutex>
 #include <pentaprism/error.h>
 #include <pentaprism/render.h>
+#include <sys/resource.h>
 
 #include "base/cpu.h"
 #include "base/parallel.h"
@@ -24,7 +23,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double milliseconds(Clock::duration duration) { return std::chrono::duration<double, std::milli>(duration).count(); }
+double milliseconds(Clock::duration duration) {
+    return std::chrono::duration<double, std::milli>(duration).count();
+}
 
 double peak_megabytes() {
     rusage usage{};
@@ -122,8 +123,8 @@ std::int64_t nanoseconds(Clock::duration duration) {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
 }
 
-void render_tile(const Visibility& visibility, const ShadingScene& shading, const SampleTable& samples, const Tile& tile,
-                 TileWorker& worker, Film& film, TileCosts& costs) {
+void render_tile(const Visibility& visibility, const ShadingScene& shading, const SampleTable& samples,
+                 const Tile& tile, TileWorker& worker, Film& film, TileCosts& costs) {
     const auto start = Clock::now();
     CoverCounts counts;
     visibility.cover(tile, worker.hits, counts);
@@ -149,7 +150,8 @@ void deliver(Film& film, int rendered_to, bool last, RowSink& sink) {
 Renderer::Renderer(const Scene& scene) : scene_(scene), textures_(make_textures(scene)) {}
 Renderer::~Renderer() = default;
 
-void Renderer::render(const RenderSettings& settings, double number, RowSink& sink, RenderStats& stats, const Progress& progress) {
+void Renderer::render(const RenderSettings& settings, double number, RowSink& sink, RenderStats& stats,
+                      const Progress& progress) {
     validate(settings);
     const auto start = Clock::now();
     set_thread_count(settings.method.threads);
@@ -166,8 +168,15 @@ void Renderer::render(const RenderSettings& settings, double number, RowSink& si
     const auto sampled = Clock::now();
 
     const PixelRect crop = crop_of(settings.image);
-    FilmSettings film_settings{crop.x0, crop.y0, crop.x1, crop.y1, 0, settings.image.spp, settings.image.filter,
-                               background_of(scene_, settings.image), settings.image.exposure};
+    FilmSettings film_settings{crop.x0,
+                               crop.y0,
+                               crop.x1,
+                               crop.y1,
+                               0,
+                               settings.image.spp,
+                               settings.image.filter,
+                               background_of(scene_, settings.image),
+                               settings.image.exposure};
     film_settings.band_rows = band_rows(crop);
     Film film(film_settings);
     const PixelRect rendered = grown(crop, film.reach(), view.width, view.height);
@@ -245,6 +254,8 @@ std::vector<CullingChoice> culling_tests() {
     return choices;
 }
 
-std::string cpu_target() { return isa_name(cpu_isa()); }
+std::string cpu_target() {
+    return isa_name(cpu_isa());
+}
 
 }  // namespace pentaprism

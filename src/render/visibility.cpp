@@ -17,12 +17,14 @@ const CullTest* choose_test(const std::string& name) {
 }  // namespace
 
 Grouping grouping_for(const Frame& frame) {
-    const bool motion = std::any_of(frame.parts.begin(), frame.parts.end(), [](const Part& part) { return part.moves; });
+    const bool motion =
+        std::any_of(frame.parts.begin(), frame.parts.end(), [](const Part& part) { return part.moves; });
     const bool defocus = !frame.view.lens.pinhole();
     return motion ? (defocus ? Grouping::kBoth : Grouping::kMotion) : (defocus ? Grouping::kDefocus : Grouping::kStill);
 }
 
-Visibility::Visibility(const Frame& frame, const SampleTable& samples, const MethodSettings& method, const PixelRect& limits)
+Visibility::Visibility(const Frame& frame, const SampleTable& samples, const MethodSettings& method,
+                       const PixelRect& limits)
     : frame_(frame), samples_(samples), test_(choose_test(method.culling)), bins_(frame, method.tile_size, limits) {
     const int size = method.tile_size;
     for (int y = limits.y0 / size * size; y < limits.y1; y += size)

@@ -12,11 +12,13 @@ namespace pentaprism {
 namespace {
 
 // The period is a whole number of cells; larger tables for fewer samples, where a repetition would show more.
-int period_for(int spp) { return spp <= 16 ? 128 : spp <= 64 ? 64 : 32; }
+int period_for(int spp) {
+    return spp <= 16 ? 128 : spp <= 64 ? 64 : 32;
+}
 
-// The sixteen pixels of a block share the first base-4 digit of u, v and t of each index, so that a vector is close in lens and
-// time; their second digits are a net of their own over the block: with columns and rows as elements of GF(4), each line of
-// pixels and each pair of dimensions sees all digits once.
+// The sixteen pixels of a block share the first base-4 digit of u, v and t of each index, so that a vector is close in
+// lens and time; their second digits are a net of their own over the block: with columns and rows as elements of GF(4),
+// each line of pixels and each pair of dimensions sees all digits once.
 struct LaneDigits {
     std::uint32_t u, v, t;
 };
@@ -37,7 +39,8 @@ struct RawSample {
 class BlockPattern {
   public:
     BlockPattern(int spp, std::uint32_t seed, int bx, int by) : spp_(spp) {
-        const std::uint32_t place = mix(static_cast<std::uint32_t>(bx) * 0x9e3779b9u + mix(static_cast<std::uint32_t>(by) + 1u));
+        const std::uint32_t place =
+            mix(static_cast<std::uint32_t>(bx) * 0x9e3779b9u + mix(static_cast<std::uint32_t>(by) + 1u));
         block_ = mix(place + seed * 0x85ebca6bu + 0x1b873593u);
     }
 
@@ -77,7 +80,8 @@ SamplePoint to_sample(const RawSample& raw, int spp, const Lens& lens) {
     const float limit = static_cast<float>(lens.ratio);
     sample.u = std::clamp(static_cast<float>(uv.x), -1.0f, 1.0f);
     sample.v = std::clamp(static_cast<float>(uv.y), -limit, limit);
-    const std::uint64_t t = ((static_cast<std::uint64_t>(raw.stratum_t) << 24) | raw.jitter_t) / static_cast<unsigned>(spp);
+    const std::uint64_t t =
+        ((static_cast<std::uint64_t>(raw.stratum_t) << 24) | raw.jitter_t) / static_cast<unsigned>(spp);
     sample.t = static_cast<float>(t) / 16777216.0f;
     return sample;
 }
@@ -92,14 +96,15 @@ LocalOffset local_offset(int block, int lane) {
             static_cast<float>(half - block / kCellBlocks * kBlockSize - lane / kBlockSize)};
 }
 
-// Slot of each index in lens order: groups of sixteen consecutive indices hold each of the 4x4 lens cells once, so a whole group
-// is laid out by cell; the remainder of spp / 16 in ascending order of its cells.
+// Slot of each index in lens order: groups of sixteen consecutive indices hold each of the 4x4 lens cells once, so a
+// whole group is laid out by cell; the remainder of spp / 16 in ascending order of its cells.
 std::vector<std::uint16_t> lens_order(const BlockPattern& pattern, int spp) {
     std::vector<std::uint16_t> slot_of_index(spp);
     for (int first = 0; first < spp; first += 16) {
         const int last = std::min(first + 16, spp);
         std::vector<std::pair<std::uint32_t, int>> cells;
-        for (int i = first; i < last; ++i) cells.emplace_back((pattern.base_v(i) >> 30) * 4 + (pattern.base_u(i) >> 30), i);
+        for (int i = first; i < last; ++i)
+            cells.emplace_back((pattern.base_v(i) >> 30) * 4 + (pattern.base_u(i) >> 30), i);
         std::sort(cells.begin(), cells.end());
         for (int rank = 0; rank < last - first; ++rank)
             slot_of_index[cells[rank].second] = static_cast<std::uint16_t>(first + rank);
@@ -111,10 +116,14 @@ std::vector<std::uint16_t> lens_order(const BlockPattern& pattern, int spp) {
 int stratum_of(Grouping grouping, int spp, std::uint32_t base_u, std::uint32_t base_v, std::uint32_t index, int slot) {
     const int lens_cell = static_cast<int>((base_v >> 30) * 4 + (base_u >> 30));
     switch (grouping) {
-        case Grouping::kStill: return 0;
-        case Grouping::kMotion: return spp <= 64 ? slot : slot * 64 / spp;
-        case Grouping::kDefocus: return lens_cell;
-        case Grouping::kBoth: return static_cast<int>((index & ~3u) * 4 / spp) * 16 + lens_cell;
+        case Grouping::kStill:
+            return 0;
+        case Grouping::kMotion:
+            return spp <= 64 ? slot : slot * 64 / spp;
+        case Grouping::kDefocus:
+            return lens_cell;
+        case Grouping::kBoth:
+            return static_cast<int>((index & ~3u) * 4 / spp) * 16 + lens_cell;
     }
     return 0;
 }
@@ -123,10 +132,14 @@ constexpr int kMaxStrata = 64;
 
 int stratum_count(Grouping grouping, int spp) {
     switch (grouping) {
-        case Grouping::kStill: return 1;
-        case Grouping::kMotion: return std::min(spp, kMaxStrata);
-        case Grouping::kDefocus: return 16;
-        case Grouping::kBoth: return kMaxStrata;
+        case Grouping::kStill:
+            return 1;
+        case Grouping::kMotion:
+            return std::min(spp, kMaxStrata);
+        case Grouping::kDefocus:
+            return 16;
+        case Grouping::kBoth:
+            return kMaxStrata;
     }
     return kMaxStrata;
 }
@@ -166,9 +179,9 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
             for (int lane = 0; lane < kLanes; ++lane) {
                 const RawSample raw = pattern.sample(lane, index);
                 const SamplePoint sample = to_sample(raw, spp, lens);
-                const int slot = by_lens                          ? order[index]
+                const int slot = by_lens                         ? order[index]
                                  : grouping == Grouping::kMotion ? static_cast<int>(raw.stratum_t)
-                                                                  : index;
+                                                                 : index;
                 SampleVector& vector = vectors_[b * spp + slot];
                 const LocalOffset place = local_offset(static_cast<int>(b) % kBlocksPerCell, lane);
                 vector.x[lane] = place.x + sample.x;
@@ -205,13 +218,15 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
 // The picture is paved with periods, each shifted by a whole number of cells so that repetitions do not line up.
 std::size_t SampleTable::cell_index(int cx, int cy) const {
     const int cells = period_ / kCellSize;
-    const std::uint32_t hash = mix(mix(static_cast<std::uint32_t>(cx / cells) + seed_) + static_cast<std::uint32_t>(cy / cells));
+    const std::uint32_t hash =
+        mix(mix(static_cast<std::uint32_t>(cx / cells) + seed_) + static_cast<std::uint32_t>(cy / cells));
     const int x = (cx + static_cast<int>(hash & 0xff)) % cells, y = (cy + static_cast<int>((hash >> 8) & 0xff)) % cells;
     return static_cast<std::size_t>(y) * cells + x;
 }
 
 std::size_t SampleTable::block_index(int bx, int by) const {
-    return cell_index(bx / kCellBlocks, by / kCellBlocks) * kBlocksPerCell + by % kCellBlocks * kCellBlocks + bx % kCellBlocks;
+    return cell_index(bx / kCellBlocks, by / kCellBlocks) * kBlocksPerCell + by % kCellBlocks * kCellBlocks +
+           bx % kCellBlocks;
 }
 
 std::span<const SampleVector> SampleTable::block(int bx, int by) const {
@@ -227,7 +242,9 @@ std::span<const std::uint16_t> SampleTable::indices(int bx, int by) const {
     return std::span(indices_).subspan(block_index(bx, by) * spp_ * kLanes, static_cast<std::size_t>(spp_) * kLanes);
 }
 
-std::span<const SampleTable::Stratum> SampleTable::strata(int cx, int cy) const { return strata_[cell_index(cx, cy)]; }
+std::span<const SampleTable::Stratum> SampleTable::strata(int cx, int cy) const {
+    return strata_[cell_index(cx, cy)];
+}
 
 int SampleTable::slot_of(int px, int py, int index) const {
     const int lane = py % kBlockSize * kBlockSize + px % kBlockSize;
