@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <pentaprism/scene.h>
 #include <pentaprism/settings.h>
 #include <pentaprism/stats.h>
@@ -48,6 +49,23 @@ class RowSink {
 /// Called now and then from one thread at a time with the part of the frame that is done, 0 to 1. Returning false stops
 /// the frame: render_frame throws Error(kRender) "interrupted".
 using Progress = std::function<bool(double done)>;
+
+class Textures;
+
+/// Renders frames of one scene and keeps between them what does not change, such as filtered textures.
+class Renderer {
+  public:
+    /// The scene must outlive the renderer and not change.
+    explicit Renderer(const Scene& scene);
+    ~Renderer();
+
+    /// As render_frame(). One frame at a time: a frame uses all threads by itself.
+    void render(const RenderSettings& settings, double frame, RowSink& sink, RenderStats& stats, const Progress& progress = {});
+
+  private:
+    const Scene& scene_;
+    std::shared_ptr<const Textures> textures_;
+};
 
 /// Renders frame number `frame` into `sink`. Throws Error. The same input gives the same pixels, bit for bit, for any
 /// number of threads, tile size and CPU target.

@@ -1,5 +1,7 @@
 #include "bound/local_triangle.h"
 
+#include <algorithm>
+
 #include "bound/screen_bounds.h"
 
 namespace pentaprism {
@@ -33,7 +35,10 @@ LocalTriangle localize(const Frame& frame, std::uint32_t triangle, int segment, 
         local.dw[i] = static_cast<float>(dw);
         local.dc[i] = static_cast<float>(dc);
         local.dz[i] = static_cast<float>(dz);
-        local.behind = local.behind || m.w[i][0] < frame.view.w_near() || m.w[i][1] < frame.view.w_near();
+        // The end of the path as the exact test computes it counts, too: rounding dw may put it behind the camera plane when
+        // the vertex comes from very far.
+        const float end_w = local.qw[i] + local.dw[i];
+        local.behind = local.behind || std::min({m.w[i][0], m.w[i][1], end_w}) < frame.view.w_near();
     }
     local.segments = static_cast<float>(part.moves ? part.segments : 1);
     local.segment = static_cast<float>(part.moves ? segment : 0);

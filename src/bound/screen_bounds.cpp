@@ -47,10 +47,11 @@ ScreenBox screen_bounds(const MovingTriangle& triangle, double w_near, double ra
     if (box.empty()) return box;
     // The sheared test's terms are no larger than the unsheared ones plus the distance to the cell times w, and the cell is
     // within the picture wherever a sample is: the scale below bounds both.
-    double scale_x = 0.0, scale_y = 0.0;
+    double scale_x = 0.0, scale_y = 0.0, farthest_w = 0.0;
     const double reach_x = std::max(std::abs(box.x0), std::abs(box.x1)), reach_y = std::max(std::abs(box.y0), std::abs(box.y1));
     for (const Point& p : points) {
         const double w = std::abs(p.w);
+        farthest_w = std::max(farthest_w, w);
         scale_x = std::max(scale_x, std::abs(p.x) + std::abs(p.c) + w * (32.0 + std::min(reach_x, 32768.0)));
         scale_y = std::max(scale_y, std::abs(p.y) + ratio * std::abs(p.c) + w * (32.0 + std::min(reach_y, 32768.0)));
     }
@@ -59,6 +60,8 @@ ScreenBox screen_bounds(const MovingTriangle& triangle, double w_near, double ra
     box.x1 += slack * scale_x;
     box.y0 -= slack * scale_y;
     box.y1 += slack * scale_y;
+    // The exact test moves q by a rounded r - q, which may miss r by the roundoff of the larger of them.
+    box.nearest_w = std::max(w_near, box.nearest_w - 2.0 * kUnitRoundoff * farthest_w);
     return box;
 }
 

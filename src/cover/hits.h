@@ -3,8 +3,8 @@
 
 #include <cstdint>
 #include <limits>
-#include <vector>
 
+#include "base/aligned.h"
 #include "sample/sample_table.h"
 
 namespace pentaprism {
@@ -22,8 +22,8 @@ struct Tile {
 /// A whole cell's worth of samples, whatever the tile size: entry (block * slots + slot) * kLanes + lane, where block =
 /// 8 * (row in the cell) + column. depth is +infinity and triangle kNoTriangle where nothing is hit.
 struct Hits {
-    std::vector<float> depth;
-    std::vector<std::uint32_t> triangle;
+    AlignedVector<float> depth;
+    AlignedVector<std::uint32_t> triangle;
     void reset(int slots) {
         const std::size_t n = static_cast<std::size_t>(kBlocksPerCell) * slots * kLanes;
         depth.assign(n, std::numeric_limits<float>::infinity());

@@ -1,5 +1,6 @@
 // Coverage: homogeneous edge functions (Olano & Greer 1997) with the tie rule and condition (N) of
-// docs/develop/algorithms.md 2.1 and 2.3. Departs from cover/ in everything but the formula: double precision, no cells.
+// docs/develop/algorithms.md 2.1 and 2.3. Departs from cover/ in everything but the formula: double precision, no
+// cells.
 
 #include "peer/brute_force.h"
 
@@ -8,8 +9,8 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "bound/local_triangle.h"
 #include "cover/exact.h"
-#include "frame/local_triangle.h"
 #include "frame/opacity.h"
 
 namespace pentaprism {
@@ -35,7 +36,9 @@ struct Seen {
     double x, y, w, z;
 };
 
-double mix(float q, float r, double s) { return q + s * (static_cast<double>(r) - q); }
+double mix(float q, float r, double s) {
+    return q + s * (static_cast<double>(r) - q);
+}
 
 /// The three vertices of a triangle between two knots.
 struct Corners {
@@ -91,8 +94,12 @@ int edge_sign(double e, const Seen& i, const Seen& j) {
 }
 
 /// Depth range of the camera, in the floats that the frame's triangles carry.
-double near_of(const View& view) { return static_cast<float>(view.depth_near); }
-double far_of(const View& view) { return static_cast<float>(view.depth_far); }
+double near_of(const View& view) {
+    return static_cast<float>(view.depth_near);
+}
+double far_of(const View& view) {
+    return static_cast<float>(view.depth_far);
+}
 
 ExactHit cover(const Frame& frame, const Part& part, std::uint32_t triangle, const Moment& at,
                const PlacedSample& sample) {
@@ -124,7 +131,9 @@ void keep_nearer(ExactHit& nearest, const ExactHit& hit) {
     if (hit.depth < nearest.depth || (hit.depth == nearest.depth && hit.triangle < nearest.triangle)) nearest = hit;
 }
 
-bool may_win(const ExactHit& nearest, const ExactHit& hit) { return hit.hit() && !(hit.depth > nearest.depth); }
+bool may_win(const ExactHit& nearest, const ExactHit& hit) {
+    return hit.hit() && !(hit.depth > nearest.depth);
+}
 
 // --- the outline of a triangle ---------------------------------------------------------------------------------------
 
@@ -188,7 +197,8 @@ bool is_opaque(const Frame& frame, std::uint32_t triangle, const PlacedSample& s
     return is_opaque_at(frame, triangle, hit.barycentrics, sample.px, sample.py, sample.index, sample.spp);
 }
 
-ExactHit nearest_in_double(const Frame& frame, const std::vector<std::uint32_t>& candidates, const PlacedSample& sample) {
+ExactHit nearest_in_double(const Frame& frame, const std::vector<std::uint32_t>& candidates,
+                           const PlacedSample& sample) {
     ExactHit nearest;
     for (const std::uint32_t triangle : candidates) {
         const ExactHit hit = cover_in_double(frame, triangle, sample);

@@ -39,11 +39,12 @@ ExactHit cover_in_double(const Frame& frame, std::uint32_t triangle, const Place
 bool is_opaque(const Frame& frame, std::uint32_t triangle, const PlacedSample& sample);
 
 /// The nearest of `candidates`, or of all triangles of the frame. Equal depths: the lower triangle.
-ExactHit nearest_in_double(const Frame& frame, const std::vector<std::uint32_t>& candidates, const PlacedSample& sample);
+ExactHit nearest_in_double(const Frame& frame, const std::vector<std::uint32_t>& candidates,
+                           const PlacedSample& sample);
 ExactHit nearest_in_double(const Frame& frame, const PlacedSample& sample);
 
-/// Distance in pixels from the sample to the outline of the triangle as the sample's lens position and time show it, cut to
-/// the camera's depth range; +infinity when nothing of it lies in that range.
+/// Distance in pixels from the sample to the outline of the triangle as the sample's lens position and time show it,
+/// cut to the camera's depth range; +infinity when nothing of it lies in that range.
 double distance_to_outline(const Frame& frame, std::uint32_t triangle, const PlacedSample& sample);
 
 /// Every sample of a small picture: entry (py * width + px) * spp + index.

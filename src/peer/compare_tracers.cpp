@@ -23,9 +23,10 @@ class Subset {
   public:
     Subset(std::int64_t wanted, std::int64_t samples)
         : all_(wanted >= samples),
-          threshold_(samples > 0 ? static_cast<std::uint64_t>(std::ldexp(static_cast<double>(std::min(wanted, samples)) /
-                                                                              static_cast<double>(samples), 63))
-                                 : 0) {}
+          threshold_(samples > 0
+                         ? static_cast<std::uint64_t>(std::ldexp(
+                               static_cast<double>(std::min(wanted, samples)) / static_cast<double>(samples), 63))
+                         : 0) {}
     bool contains(std::uint64_t sample) const { return all_ || (scatter(sample + 1) >> 1) < threshold_; }
 
   private:
@@ -97,7 +98,8 @@ class TileComparison {
         const PlacedSample sample = place_sample(frame_.view, table_, claim.px, claim.py, claim.index);
         const ExactHit exact = cover_in_double(frame_, claim.triangle, sample);
         if (exact.hit()) {
-            findings.worst_depth_error = std::max(findings.worst_depth_error, relative_difference(claim.depth, exact.depth));
+            findings.worst_depth_error =
+                std::max(findings.worst_depth_error, relative_difference(claim.depth, exact.depth));
         }
     }
 
@@ -110,8 +112,8 @@ class TileComparison {
 /// Sums verdicts into a report.
 class Tally {
   public:
-    Tally(VerifyReport& report, const std::function<void(const Verdict&)>& on_wrong)
-        : report_(report), on_wrong_(on_wrong) {}
+    Tally(VerifyReport& report, const std::function<void(const Verdict&)>& on_disagreement)
+        : report_(report), on_disagreement_(on_disagreement) {}
 
     void add(const Verdict& verdict) {
         ++report_.disagreements;
@@ -119,6 +121,7 @@ class Tally {
         if (verdict.claim.triangle == verdict.truth.triangle && verdict.truth.hit()) {
             report_.worst_depth_error = std::max(report_.worst_depth_error, verdict.depth_difference);
         }
+        if (on_disagreement_) on_disagreement_(verdict);
         if (!verdict.wrong) return;
         ++report_.ours_wrong;
         if (verdict.away_from_edge()) ++report_.away_from_edge;
@@ -126,15 +129,16 @@ class Tally {
         if (verdict.depth_difference > kDepthTolerance) {
             report_.worst_margin = std::max(report_.worst_margin, verdict.margin);
         }
-        if (on_wrong_) on_wrong_(verdict);
     }
 
   private:
     VerifyReport& report_;
-    const std::function<void(const Verdict&)>& on_wrong_;
+    const std::function<void(const Verdict&)>& on_disagreement_;
 };
 
-bool same_sample(const Claim& a, const Claim& b) { return a.px == b.px && a.py == b.py && a.index == b.index; }
+bool same_sample(const Claim& a, const Claim& b) {
+    return a.px == b.px && a.py == b.py && a.index == b.index;
+}
 
 bool before(const Claim& a, const Claim& b) {
     return std::tie(a.py, a.px, a.index) < std::tie(b.py, b.px, b.index);
@@ -162,7 +166,8 @@ VerifyReport compare_tracers(const Frame& frame, const SampleTable& table, const
     const auto advance = [&](double from, double to, std::size_t n) {
         const std::lock_guard<std::mutex> lock(mutex);
         ++done;
-        if (progress && !stopped && !progress(from + (to - from) * static_cast<double>(done) / static_cast<double>(n))) {
+        if (progress && !stopped &&
+            !progress(from + (to - from) * static_cast<double>(done) / static_cast<double>(n))) {
             stopped = true;
         }
     };
@@ -188,7 +193,7 @@ VerifyReport compare_tracers(const Frame& frame, const SampleTable& table, const
     }
 
     const Judge judge(frame, table);
-    Tally tally(report, options.on_wrong);
+    Tally tally(report, options.on_disagreement);
     for (const Verdict& verdict : judge.judge(disagreements)) tally.add(verdict);
 
     // The subset meets every triangle of the scene, with no prefilter. A sample is counted once.
@@ -205,7 +210,8 @@ VerifyReport compare_tracers(const Frame& frame, const SampleTable& table, const
     if (stopped) throw Error(ErrorKind::kRender, "interrupted");
     report.brute_force_samples = static_cast<std::int64_t>(exact.size());
     for (const Verdict& verdict : exact) {
-        const bool differs = verdict.claim.triangle != verdict.truth.triangle || verdict.depth_difference > kDepthTolerance;
+        const bool differs =
+            verdict.claim.triangle != verdict.truth.triangle || verdict.depth_difference > kDepthTolerance;
         if (differs) ++report.brute_force_disagreements;
         const auto known = std::lower_bound(disagreements.begin(), disagreements.end(), verdict.claim, before);
         if (differs && (known == disagreements.end() || !same_sample(*known, verdict.claim))) {
@@ -214,7 +220,8 @@ VerifyReport compare_tracers(const Frame& frame, const SampleTable& table, const
             report.worst_depth_error = std::max(report.worst_depth_error, verdict.depth_difference);
         }
     }
-    report.per_million = report.samples ? 1e6 * static_cast<double>(report.ours_wrong) / static_cast<double>(report.samples) : 0.0;
+    report.per_million =
+        report.samples ? 1e6 * static_cast<double>(report.ours_wrong) / static_cast<double>(report.samples) : 0.0;
     return report;
 }
 

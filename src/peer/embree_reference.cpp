@@ -1,14 +1,15 @@
 #include "peer/embree_reference.h"
 
+#include <cmath>
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
-
-#include <cmath>
 #include <map>
 #include <pentaprism/error.h>
 #include <vector>
 
 #include "base/parallel.h"
+#include "bound/local_triangle.h"
+#include "frame/opacity.h"
 #include "peer/brute_force.h"
 
 namespace pentaprism {
@@ -40,8 +41,9 @@ struct Point3 {
 void check(RTCDevice device) {
     const RTCError error = rtcGetDeviceError(device);
     if (error != RTC_ERROR_NONE) {
-        throw Error(ErrorKind::kBackend, fmt::format("Embree refuses this frame (error {}); render without the reference",
-                                                     static_cast<int>(error)));
+        throw Error(
+            ErrorKind::kBackend,
+            fmt::format("Embree refuses this frame (error {}); render without the reference", static_cast<int>(error)));
     }
 }
 
@@ -60,14 +62,16 @@ bool can_be_trusted(const Frame& frame, const Part& part, std::uint32_t triangle
 }
 
 /// A power of two that brings pixels times metres near metres: Embree's error bounds assume axes of one scale. Exact.
-float axis_scale(const View& view) { return static_cast<float>(std::exp2(-std::round(std::log2(std::max(view.fx, 1e-6))))); }
+float axis_scale(const View& view) {
+    return static_cast<float>(std::exp2(-std::round(std::log2(std::max(view.fx, 1e-6)))));
+}
 
 }  // namespace
 
 class EmbreeReference::Impl {
   public:
     Impl(const Frame& frame, const SampleTable& table, const EmbreeOptions& options)
-        : frame_(frame), table_(table), scale_(axis_scale(frame.view)) {
+        : frame_(frame), table_(table), scale_(axis_scale(frame.view)), for_speed_(options.for_speed) {
         const std::string configuration =
             fmt::format("threads={}{}{}", thread_count(), options.device.empty() ? "" : ",", options.device);
         device_ = rtcNewDevice(configuration.c_str());
@@ -100,7 +104,7 @@ class EmbreeReference::Impl {
 
     void build(const EmbreeOptions& options) {
         scene_ = rtcNewScene(device_);
-        if (options.robust) rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+        if (!options.for_speed) rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
         rtcSetSceneBuildQuality(scene_, options.fast_build ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM);
         std::map<GroupKey, Group> groups;
         for (std::uint32_t i = 0; i < frame_.parts.size(); ++i) {
@@ -111,7 +115,7 @@ class EmbreeReference::Impl {
                                                              "--motion-segments",
                                                              kMaxSegments, part.segments));
             }
-            const bool asks = !part.two_sided || part.alpha_mode != AlphaMode::kOpaque;
+            const bool asks = (!part.two_sided && !for_speed_) || part.alpha_mode != AlphaMode::kOpaque;
             Group& group = groups[{knots, asks}];
             group.asks = asks;
             group.parts.push_back(i);
@@ -198,7 +202,7 @@ class EmbreeReference::Impl {
 
     void trace_block(const Tile& tile, int bx, int by, Hits& hits) const {
         const View& view = frame_.view;
-        const double left = bx * kBlockSize - 0.5 * view.width, top = 0.5 * view.height - by * kBlockSize;
+        const CellCentre centre = cell_centre(view, bx / kCellBlocks, by / kCellBlocks);
         const float depth_near = static_cast<float>(view.depth_near), depth_far = static_cast<float>(view.depth_far);
         alignas(64) int valid[kLanes];
         alignas(64) RTCRayHit16 packet;
@@ -221,7 +225,7 @@ class EmbreeReference::Impl {
             context.vector = &samples;
             context.indices = &indices[slot * kLanes];
             for (int lane = 0; lane < kLanes; ++lane) {
-                aim(packet.ray, lane, left + samples.x[lane], top + samples.y[lane], samples.u[lane], samples.v[lane]);
+                aim(packet.ray, lane, centre.x + samples.x[lane], centre.y + samples.y[lane], samples.u[lane], samples.v[lane]);
                 packet.ray.tnear[lane] = depth_near;
                 packet.ray.tfar[lane] = depth_far;
                 packet.ray.time[lane] = samples.t[lane];
@@ -246,30 +250,47 @@ class EmbreeReference::Impl {
     static void filter(const RTCFilterFunctionNArguments* arguments) {
         const Group& group = *static_cast<const Group*>(arguments->geometryUserPtr);
         const auto& context = *static_cast<const Context*>(arguments->context);
-        const Frame& frame = context.self->frame_;
         const unsigned n = arguments->N;
         for (unsigned i = 0; i < n; ++i) {
             if (arguments->valid[i] != -1) continue;
             const std::uint32_t triangle = group.triangles[RTCHitN_primID(arguments->hit, n, i)];
-            const Part& part = frame.parts[frame.part_of[triangle]];
-            const bool front = RTCHitN_Ng_x(arguments->hit, n, i) * RTCRayN_dir_x(arguments->ray, n, i) +
-                                   RTCHitN_Ng_y(arguments->hit, n, i) * RTCRayN_dir_y(arguments->ray, n, i) +
-                                   RTCHitN_Ng_z(arguments->hit, n, i) * RTCRayN_dir_z(arguments->ray, n, i) >
-                               0.0f;
-            const int lane = static_cast<int>(RTCRayN_id(arguments->ray, n, i));
-            if ((!front && !part.two_sided) || !is_opaque(frame, triangle, context.self->placed(context, lane))) {
-                arguments->valid[i] = 0;
-            }
+            const bool hit = context.self->for_speed_ ? is_hit_quick(context, *arguments, i, triangle)
+                                                      : is_hit(context, *arguments, i, triangle);
+            if (!hit) arguments->valid[i] = 0;
         }
     }
 
-    PlacedSample placed(const Context& context, int lane) const {
+    static bool is_hit(const Context& context, const RTCFilterFunctionNArguments& arguments, unsigned i,
+                       std::uint32_t triangle) {
+        const Frame& frame = context.self->frame_;
+        const unsigned n = arguments.N;
+        const bool front = RTCHitN_Ng_x(arguments.hit, n, i) * RTCRayN_dir_x(arguments.ray, n, i) +
+                               RTCHitN_Ng_y(arguments.hit, n, i) * RTCRayN_dir_y(arguments.ray, n, i) +
+                               RTCHitN_Ng_z(arguments.hit, n, i) * RTCRayN_dir_z(arguments.ray, n, i) >
+                           0.0f;
+        if (!front && !frame.parts[frame.part_of[triangle]].two_sided) return false;
+        return is_opaque(frame, triangle, context.self->placed(context, RTCRayN_id(arguments.ray, n, i)));
+    }
+
+    static bool is_hit_quick(const Context& context, const RTCFilterFunctionNArguments& arguments, unsigned i,
+                             std::uint32_t triangle) {
+        const float u = RTCHitN_u(arguments.hit, arguments.N, i), v = RTCHitN_v(arguments.hit, arguments.N, i);
+        const float barycentrics[3] = {1.0f - u - v, u, v};
+        const int lane = static_cast<int>(RTCRayN_id(arguments.ray, arguments.N, i));
+        return is_opaque_at(context.self->frame_, triangle, barycentrics, context.bx * kBlockSize + lane % kBlockSize,
+                            context.by * kBlockSize + lane / kBlockSize, context.indices[lane],
+                            context.self->table_.spp());
+    }
+
+    PlacedSample placed(const Context& context, unsigned id) const {
+        const int lane = static_cast<int>(id);
         const SampleVector& v = *context.vector;
-        const int column = lane % kBlockSize, row = lane / kBlockSize;
-        // From the block's corner, y up, to the pixel's corner, y down: exact on the lattice of 1/256.
-        const SamplePoint point{v.x[lane] - column, -v.y[lane] - row, v.u[lane], v.v[lane], v.t[lane]};
-        return place_sample(frame_.view, point, context.bx * kBlockSize + column, context.by * kBlockSize + row,
-                            context.indices[lane], table_.spp());
+        const int px = context.bx * kBlockSize + lane % kBlockSize, py = context.by * kBlockSize + lane / kBlockSize;
+        // From the cell's middle, y up, to the pixel's corner, y down: exact on the lattice of 1/256.
+        constexpr int half = kCellSize / 2;
+        const SamplePoint point{v.x[lane] + static_cast<float>(half - px % kCellSize),
+                                static_cast<float>(half - py % kCellSize) - v.y[lane], v.u[lane], v.v[lane], v.t[lane]};
+        return place_sample(frame_.view, point, px, py, context.indices[lane], table_.spp());
     }
 
     void release() {
@@ -280,6 +301,7 @@ class EmbreeReference::Impl {
     const Frame& frame_;
     const SampleTable& table_;
     float scale_;
+    bool for_speed_;
     RTCDevice device_ = nullptr;
     RTCScene scene_ = nullptr;
     std::vector<Group> groups_;
@@ -288,8 +310,12 @@ class EmbreeReference::Impl {
 EmbreeReference::EmbreeReference(const Frame& frame, const SampleTable& table, const EmbreeOptions& options)
     : impl_(std::make_unique<Impl>(frame, table, options)) {}
 EmbreeReference::~EmbreeReference() = default;
-void EmbreeReference::trace(const Tile& tile, Hits& hits) const { impl_->trace(tile, hits); }
+void EmbreeReference::trace(const Tile& tile, Hits& hits) const {
+    impl_->trace(tile, hits);
+}
 
-std::string embree_version() { return "embree " RTC_VERSION_STRING; }
+std::string embree_version() {
+    return "embree " RTC_VERSION_STRING;
+}
 
 }  // namespace pentaprism

@@ -1,8 +1,9 @@
 #pragma once
 // An independent answer to the same question: Embree's ray tracer on the same frame and the same samples.
 //
-// A sample's line of sight is straight in raster clip space (x, y, w), and motion there is linear between knots, which is
-// what Embree's motion blur interpolates: so Embree is given the frame's own points, and its ray parameter is the depth.
+// A sample's line of sight is straight in raster clip space (x, y, w), and motion there is linear between knots, which
+// is what Embree's motion blur interpolates: so Embree is given the frame's own points, and its ray parameter is the
+// depth.
 
 #include <cstdint>
 #include <memory>
@@ -16,22 +17,24 @@ namespace pentaprism {
 
 /// How Embree is set up. The defaults are for verification.
 struct EmbreeOptions {
-    bool robust = true;       ///< watertight traversal and intersection, at a price
+    /// Embree's fastest: no robust mode, back faces of one-sided surfaces are hit, too (refusing them would cost Embree
+    /// a callback for each hit), and masks are asked at Embree's own barycentrics.
+    bool for_speed = false;
     bool fast_build = false;  ///< Embree's low build quality
     std::string device;       ///< configuration string, such as "tri_accel_mb=bvh8.triangle4vmb"
 };
 
 class EmbreeReference {
   public:
-    /// Builds Embree's scene from the frame; the frame and the table must outlive this. Throws Error(kBackend) when Embree
-    /// refuses, such as beyond 128 motion segments.
+    /// Builds Embree's scene from the frame; the frame and the table must outlive this. Throws Error(kBackend) when
+    /// Embree refuses, such as beyond 128 motion segments.
     EmbreeReference(const Frame& frame, const SampleTable& table, const EmbreeOptions& options);
     ~EmbreeReference();
     EmbreeReference(const EmbreeReference&) = delete;
     EmbreeReference& operator=(const EmbreeReference&) = delete;
 
-    /// The nearest triangle of every sample of a tile, a packet of 16 rays for each vector of the sample table. `hits` has
-    /// been reset. Thread-safe.
+    /// The nearest triangle of every sample of a tile, a packet of 16 rays for each vector of the sample table. `hits`
+    /// has been reset. Thread-safe.
     void trace(const Tile& tile, Hits& hits) const;
 
   private:

@@ -1,7 +1,7 @@
-// Judging needs the nearest of all triangles, but only those whose screen bounds reach the sample's neighbourhood can be it.
-// The bounds here are plain on purpose: vertices at all knots with their whole circle of confusion, which holds because a
-// quotient of affine functions has its extremes at the ends (docs/develop/algorithms.md 3.2); a triangle that comes nearer
-// than the near plane is a candidate everywhere.
+// Judging needs the nearest of all triangles, but only those whose screen bounds reach the sample's neighbourhood can
+// be it. The bounds here are plain on purpose: vertices at all knots with their whole circle of confusion, which holds
+// because a quotient of affine functions has its extremes at the ends (docs/develop/algorithms.md 3.2); a triangle that
+// comes nearer than the near plane is a candidate everywhere.
 
 #include "peer/judge.h"
 
@@ -17,8 +17,12 @@ constexpr int kGrid = 16;  // pixels a side of the cells for which candidates ar
 constexpr float kEverywhere = 1e9f;
 
 /// Wider than the rounding of the box itself.
-float down(double value) { return static_cast<float>(value - 1e-3 - 1e-6 * std::abs(value)); }
-float up(double value) { return static_cast<float>(value + 1e-3 + 1e-6 * std::abs(value)); }
+float down(double value) {
+    return static_cast<float>(value - 1e-3 - 1e-6 * std::abs(value));
+}
+float up(double value) {
+    return static_cast<float>(value + 1e-3 + 1e-6 * std::abs(value));
+}
 
 }  // namespace
 
@@ -42,8 +46,8 @@ Judge::Box Judge::bounds(std::uint32_t triangle) const {
     Box box{kEverywhere, -kEverywhere, kEverywhere, -kEverywhere};
     for (int i = 0; i < 3; ++i) {
         for (int knot = 0; knot < knots; ++knot) {
-            const std::size_t point = frame_.corners[3 * std::size_t{triangle} + i] +
-                                      static_cast<std::size_t>(knot) * part.vertex_count;
+            const std::size_t point =
+                frame_.corners[3 * std::size_t{triangle} + i] + static_cast<std::size_t>(knot) * part.vertex_count;
             const glm::dvec4 p(frame_.points[point]);
             if (!(p.z >= w_near)) return {-kEverywhere, kEverywhere, -kEverywhere, kEverywhere};
             const double cx = lens_x * std::abs(p.w), cy = lens_y * std::abs(p.w);
@@ -68,8 +72,10 @@ Verdict Judge::compare(const Claim& claim, const ExactHit& truth) const {
         if (claims_hit && truth.hit()) {
             // Both cover the sample and only their order is in question: then depth decides, as far as floats can.
             const ExactHit claimed = cover_in_double(frame_, claim.triangle, sample);
-            verdict.depth_tie = claimed.hit() && is_opaque(frame_, claim.triangle, sample) &&
-                                relative_difference(claimed.depth, truth.depth) <= kDepthTie;
+            if (claimed.hit() && is_opaque(frame_, claim.triangle, sample)) {
+                verdict.tie_gap = relative_difference(claimed.depth, truth.depth);
+                verdict.depth_tie = verdict.tie_gap <= kDepthTie;
+            }
             verdict.wrong = !verdict.depth_tie || verdict.depth_difference > kDepthTolerance;
         }
     }
@@ -97,10 +103,12 @@ std::vector<Verdict> Judge::judge(std::span<const Claim> claims) const {
     std::vector<std::vector<std::uint32_t>> candidates_of(claims_of.size());
     if (!claims.empty()) {
         const auto column = [&](float x) {
-            return static_cast<int>(std::clamp(std::floor((x + 0.5f * view.width) / kGrid), -1.0f, static_cast<float>(columns)));
+            return static_cast<int>(
+                std::clamp(std::floor((x + 0.5f * view.width) / kGrid), -1.0f, static_cast<float>(columns)));
         };
         const auto row = [&](float y) {
-            return static_cast<int>(std::clamp(std::floor((0.5f * view.height - y) / kGrid), -1.0f, static_cast<float>(rows)));
+            return static_cast<int>(
+                std::clamp(std::floor((0.5f * view.height - y) / kGrid), -1.0f, static_cast<float>(rows)));
         };
         for (std::uint32_t triangle = 0; triangle < boxes_.size(); ++triangle) {
             const Box& box = boxes_[triangle];

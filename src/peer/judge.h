@@ -1,5 +1,6 @@
 #pragma once
-// Who is right? Samples on which the renderer and a reference disagree are decided in double precision over the whole scene.
+// Who is right? Samples on which the renderer and a reference disagree are decided in double precision over the whole
+// scene.
 
 #include <cstdint>
 #include <span>
@@ -9,10 +10,11 @@
 
 namespace pentaprism {
 
-/// Depths within this of each other, relative, are called equal (docs/use/verify.md).
+/// Depths within this of each other, relative, are called equal (docs/develop/verification.md).
 inline constexpr double kDepthTolerance = 1e-5;
-/// Two surfaces nearer to each other than this, relative, are a tie that depths in float cannot decide: either may win.
-inline constexpr double kDepthTie = 1e-6;
+/// Two surfaces that double precision puts no further apart than the last bit of a depth in float are a tie: either may
+/// win.
+inline constexpr double kDepthTie = 0x1p-23;
 /// Pixels from an outline within which the rounding of a float test may decide.
 inline constexpr double kEdgeTolerance = 1e-2;
 
@@ -26,9 +28,10 @@ struct Claim {
 struct Verdict {
     Claim claim;
     ExactHit truth;
-    bool wrong = false;           ///< double precision is against the claim
-    bool depth_tie = false;       ///< the claimed surface is another than the truth's, but no further off than kDepthTie
-    double margin = 0.0;          ///< pixels to the nearest outline of the triangles concerned (claimed and true)
+    bool wrong = false;      ///< double precision is against the claim
+    bool depth_tie = false;  ///< the claimed surface is another than the truth's, but no further off than kDepthTie
+    double tie_gap = 0.0;    ///< of a depth tie: by how much, relative, the true surface is nearer in double
+    double margin = 0.0;     ///< pixels to the nearest outline of the triangles concerned (claimed and true)
     double depth_difference = 0.0;  ///< relative, claimed against true depth; +infinity when one of them is no hit
     /// Beyond what the rounding of a float test explains: such a sample is a defect of the renderer.
     bool away_from_edge() const { return wrong && margin > kEdgeTolerance && depth_difference > kDepthTolerance; }

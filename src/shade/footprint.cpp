@@ -15,7 +15,7 @@ float box_width(float variance) {
 
 }  // namespace
 
-glm::vec4 BoundTexture::sample(glm::vec2 uv, const Footprint& footprint) const {
+glm::vec4 BoundTexture::sample(glm::vec2 uv, const TextureFootprint& footprint) const {
     const glm::vec2 place = {matrix.x * uv.x + matrix.z * uv.y + ref.offset.x,
                              matrix.y * uv.x + matrix.w * uv.y + ref.offset.y};
     // The ellipse in texels: T C T^t with T = size * matrix.

@@ -9,7 +9,7 @@
 namespace pentaprism {
 
 /// Covariance of the texture coordinates that a shading point stands for: its pixel, its motion and its lens disk.
-struct Footprint {
+struct TextureFootprint {
     float uu = 0.0f, uv = 0.0f, vv = 0.0f;
     void add(glm::vec2 axis, float variance) {
         uu += variance * axis.x * axis.x;
@@ -26,7 +26,7 @@ struct BoundTexture {
     int set = 0;                               ///< texture coordinates, 0 or 1
 
     /// Mean over the footprint: up to 16 trilinear taps along its longer axis, each as wide as the shorter one.
-    glm::vec4 sample(glm::vec2 uv, const Footprint& footprint) const;
+    glm::vec4 sample(glm::vec2 uv, const TextureFootprint& footprint) const;
 };
 
 }  // namespace pentaprism

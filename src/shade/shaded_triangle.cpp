@@ -55,7 +55,7 @@ void ShadedTriangle::project(std::uint32_t triangle) {
 
 // One evaluation stands for all samples of its pixel: it is filtered over the pixel (variance 1/12 each way), over the
 // whole shutter (1/12) and over the lens disk (1/4 each way).
-Footprint ShadedTriangle::footprint(const glm::vec3& barycentrics, int set) const {
+TextureFootprint ShadedTriangle::footprint(const glm::vec3& barycentrics, int set) const {
     const std::vector<glm::vec2>& uvs = part_.primitive->texcoords[set];
     if (uvs.empty()) return {};
     const glm::dvec3 b(barycentrics);
@@ -75,7 +75,7 @@ Footprint ShadedTriangle::footprint(const glm::vec3& barycentrics, int set) cons
     const float coc = static_cast<float>(glm::dot(b, projection_.coc) / point.z);
     const float ratio = static_cast<float>(scene_.frame().view.lens.ratio);
 
-    Footprint footprint;
+    TextureFootprint footprint;
     const float lens = 0.25f * coc * coc;
     footprint.add(by_x, 1.0f / 12.0f + lens);
     footprint.add(by_y, 1.0f / 12.0f + lens * ratio * ratio);
@@ -89,7 +89,7 @@ glm::vec3 ShadedTriangle::shade(const glm::vec3& b, bool front) const {
     const Primitive& primitive = *part_.primitive;
 
     glm::vec2 uv[2] = {};
-    Footprint footprints[2];
+    TextureFootprint footprints[2];
     if (bound.textured)
         for (int set = 0; set < 2; ++set) {
             if (primitive.texcoords[set].empty()) continue;

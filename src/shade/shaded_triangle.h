@@ -28,7 +28,7 @@ class ShadedTriangle {
         glm::dvec3 coc;         // c of each corner
     };
     void project(std::uint32_t triangle);
-    Footprint footprint(const glm::vec3& barycentrics, int set) const;
+    TextureFootprint footprint(const glm::vec3& barycentrics, int set) const;
 
     const ShadingScene& scene_;
     const ShadedPart& part_;

@@ -1,12 +1,11 @@
 #pragma once
 // What shading looks up: the frame's geometry in world space at mid-shutter, bound materials and lights.
 
-#include <pentaprism/scene.h>
-
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <pentaprism/scene.h>
 #include <vector>
 
 #include "frame/frame.h"

@@ -17,6 +17,12 @@ constexpr Recipe kRecipes[] = {
     {{"fairy-forest",
       "a fairy crosses a glade at dusk: thousands of leaves, falling petals, glowing lights out of focus", 170000},
      builtin::fairy_forest},
+    {{"dragonfly", "a dragonfly hovers over a lily pond, wings beating, reeds close to the lens", 85000},
+     builtin::dragonfly},
+    {{"car", "racing cars of the sixties seen from beside the track, wheels spinning, the camera panning along", 54000},
+     builtin::car},
+    {{"hand", "a skinned hand waves and closes before the lights of a city at night", 15000}, builtin::hand},
+    {{"cubes", "textured boxes tumble over a checkered floor that passes below the camera", 50}, builtin::cubes},
 };
 
 }  // namespace

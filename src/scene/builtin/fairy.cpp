@@ -47,7 +47,7 @@ Primitive body(Index material) {
         {{-0.36, 1.9, -0.1}, {-0.32, 0.55, -1.0}, 0.29, 0.17, kTights, 4},
         {{-0.32, 0.5, -1.02}, {-0.34, -0.15, -1.15}, 0.19, 0.12, kShoe, 4},
     };
-    return ImplicitBody(limbs, 0.22).polygonize(0.105, material, false);
+    return ImplicitBody(limbs, 0.22).polygonize(0.135, material, false);
 }
 
 Primitive hair(Index material) {
@@ -65,7 +65,7 @@ Primitive hair(Index material) {
         limbs.push_back({b, c, 0.32, 0.2, glm::mix(kHair, kHairTip, 0.5), 0});
         limbs.push_back({c, d, 0.2, 0.04, kHairTip, 0});
     }
-    return ImplicitBody(limbs, 0.2).polygonize(0.14, material, false);
+    return ImplicitBody(limbs, 0.2).polygonize(0.17, material, false);
 }
 
 /// Skirt of two rings of petals, a crown of blossoms, and the eyes.

@@ -44,15 +44,16 @@ Transform placed(glm::dvec3 position, double yaw = 0.0, double scale = 1.0) {
 
 /// Where the fairy is: across the picture from left to right, bobbing, a little towards the camera.
 glm::dvec3 fairy_path(double t) {
-    return {-0.215 + 0.135 * t, 0.135 + 0.02 * std::sin(2.1 * t + 0.9), -0.035 + 0.03 * std::sin(0.9 * t + 0.6)};
+    return {-0.205 + 0.115 * t, 0.158 + 0.02 * std::sin(2.1 * t + 0.9), -0.03 + 0.03 * std::sin(0.9 * t + 0.6)};
 }
 
 void add_ground(Assembly& forest) {
     Material soil = painted("forest floor", 0.95);
+    soil.base_color_texture = texture(forest.add(litter_texture()), glm::dvec2(4.5));  // texture coordinates are metres
     const Index index = forest.add(soil);
     MeshBuilder m;
     m.surface(
-        110, 84,
+        100, 78,
         [](double u, double v) {
             // Finer near the camera: the grid's rows lie closer together there.
             const double z = 0.75 - 8.0 * std::pow(v, 1.9);
@@ -60,13 +61,16 @@ void add_ground(Assembly& forest) {
             return on_ground(x, z);
         },
         [](double, double, glm::dvec3 p) {
-            const glm::dvec3 earth{0.055, 0.032, 0.018}, moss{0.075, 0.115, 0.02}, litter{0.17, 0.10, 0.035};
-            const double mossy = glm::smoothstep(0.38, 0.62, fractal_noise({3.1 * p.x, 3.1 * p.z}, 4));
-            const double littered = glm::smoothstep(0.55, 0.75, fractal_noise({22.0 * p.x + 5.0, 22.0 * p.z}, 3));
-            const glm::dvec3 near = glm::mix(glm::mix(earth, moss, mossy), litter, 0.6 * littered);
-            return glm::mix(near, glm::dvec3(0.05, 0.10, 0.08), glm::smoothstep(1.0, 6.5, -p.z));
+            const glm::dvec3 earth{0.13, 0.075, 0.035}, moss{0.13, 0.21, 0.035}, litter{0.34, 0.19, 0.06};
+            const double mossy = glm::smoothstep(0.36, 0.58, fractal_noise({3.1 * p.x, 3.1 * p.z}, 4));
+            const double littered = glm::smoothstep(0.5, 0.75, fractal_noise({22.0 * p.x + 5.0, 22.0 * p.z}, 3));
+            const glm::dvec3 near = glm::mix(glm::mix(earth, moss, mossy), litter, 0.5 * littered);
+            return glm::mix(near, glm::dvec3(0.05, 0.13, 0.10), glm::smoothstep(0.8, 5.5, -p.z));
         });
-    forest.add_node("forest floor", kNone, {}, forest.add_mesh("forest floor", m.take(index)));
+    Primitive floor = m.take(index);
+    for (std::size_t i = 0; i < floor.positions.size(); ++i)
+        floor.texcoords[0][i] = {floor.positions[i].x, floor.positions[i].z};
+    forest.add_node("forest floor", kNone, {}, forest.add_mesh("forest floor", std::move(floor)));
 }
 
 /// The sky seen between the trunks: a curved wall that glows where the sun has just set. Only behind the trees, so that
@@ -85,12 +89,15 @@ void add_evening_sky(Assembly& forest) {
             return glm::dvec3(8.6 * std::sin(a), -0.6 + 6.4 * v, 0.6 - 8.6 * std::cos(a));
         },
         [](double u, double v, glm::dvec3) {
-            const glm::dvec3 high{0.030, 0.055, 0.13}, middle{0.09, 0.17, 0.20}, low{0.42, 0.30, 0.16},
-                glow{1.0, 0.72, 0.36};
+            const glm::dvec3 high{0.012, 0.030, 0.075}, middle{0.035, 0.100, 0.120}, low{0.16, 0.15, 0.09},
+                halo{0.46, 0.21, 0.07}, glow{1.0, 0.60, 0.20};
             const glm::dvec3 base =
-                glm::mix(glm::mix(low, middle, glm::smoothstep(0.08, 0.38, v)), high, glm::smoothstep(0.3, 0.85, v));
-            const double dx = (u - 0.64) / 0.26, dy = (v - 0.26) / 0.28;
-            return glm::mix(base, glow, std::exp(-(dx * dx + dy * dy)));
+                glm::mix(glm::mix(low, middle, glm::smoothstep(0.1, 0.3, v)), high, glm::smoothstep(0.25, 0.6, v));
+            const auto spot = [&](double radius_u, double radius_v) {
+                const double dx = (u - 0.585) / radius_u, dy = (v - 0.24) / radius_v;
+                return std::exp(-(dx * dx + dy * dy));
+            };
+            return glm::mix(glm::mix(base, halo, spot(0.2, 0.2)), glow, spot(0.075, 0.1));
         });
     forest.add_node("evening sky", kNone, {}, forest.add_mesh("evening sky", m.take(index)));
 }
@@ -160,8 +167,8 @@ void add_trees(Assembly& forest) {
                                          {6, 150, 0.115, 0.055, 0.035}, kNearLeaves, bark, leaf);
     const TreeKind cherry = make_tree_kind(forest, "cherry", random, {0.17, 0.10, 0.09}, {0.010f, 0.008f, 0.008f},
                                            {6, 150, 0.085, 0.06, 0.03}, kBlossom, bark, leaf);
-    const TreeKind far = make_tree_kind(forest, "far tree", random, {0.09, 0.10, 0.10}, {0.014f, 0.034f, 0.038f},
-                                        {5, 105, 0.15, 0.075, 0.04}, kFarLeaves, bark, leaf);
+    const TreeKind far = make_tree_kind(forest, "far tree", random, {0.09, 0.10, 0.10}, {0.006f, 0.018f, 0.022f},
+                                        {4, 70, 0.18, 0.095, 0.04}, kFarLeaves, bark, leaf);
 
     // Two trunks frame the picture; the rest leave a clearing towards the light.
     add_tree(forest, random, near, on_ground(-0.66, -0.42), 1.55, 7, 0.42);
@@ -194,7 +201,7 @@ void add_undergrowth(Assembly& forest) {
     std::vector<Index> tufts;
     for (int i = 0; i < 3; ++i) {
         MeshBuilder grass;
-        add_grass_tuft(grass, random, 22, 1.0, kGrass);
+        add_grass_tuft(grass, random, 20, 1.0, kGrass);
         tufts.push_back(forest.add_mesh("grass tuft", grass.take(material)));
     }
     // Near tufts sway one by one; those in the distance are instances of one node.
@@ -216,6 +223,26 @@ void add_undergrowth(Assembly& forest) {
             forest.node(meadow).instances.push_back(placed(on_ground(x, z), yaw, random.range(0.09, 0.17)));
         }
     }
+    MeshBuilder clover;
+    for (int k = 0; k < 17; ++k) {
+        const glm::dvec2 at = 0.5 * random.in_disk();
+        const glm::dvec3 top{at.x, random.range(0.08, 0.2), at.y};
+        const double a = random.angle();
+        const glm::dvec3 color = kGrass.pick(random);
+        for (int leaflet = 0; leaflet < 3; ++leaflet) {
+            const double b = a + kTwoPi * leaflet / 3.0;
+            clover.blade({top, {std::cos(b), 0.25, std::sin(b)}, {0.0, 1.0, 0.0}, 0.11, 0.1, 0.3, 0.25, 0.65, 2},
+                         [&](double, double v, glm::dvec3) { return color * (0.6 + 0.7 * v); });
+        }
+    }
+    const Index carpet = forest.add_node("clover", kNone, {}, forest.add_mesh("clover", clover.take(material)));
+    for (int k = 0; k < 44; ++k) {
+        const double z = 0.2 - 0.75 * random.uniform();
+        const double x = random.around(0.0, 0.2 + 0.62 * (0.62 - z));
+        const double yaw = random.angle();
+        forest.node(carpet).instances.push_back(placed(on_ground(x, z), yaw, random.range(0.07, 0.12)));
+    }
+
     // Two tufts right before the lens frame the picture from below.
     for (const glm::dvec3& at : {glm::dvec3(0.21, 0.0, 0.30), glm::dvec3(-0.17, -0.01, 0.33)}) {
         const Index tuft =
@@ -301,18 +328,18 @@ void add_mushrooms(Assembly& forest) {
 
     // Small ones that glow blue at the foot of the left trunk and light the moss around them.
     Material glowing = painted("glowing mushroom", 0.5);
-    glowing.emissive = {0.06f, 0.42f, 0.55f};
+    glowing.emissive = {0.010f, 0.13f, 0.19f};
     const Index glow = forest.add(glowing);
     MushroomStyle lamp;
-    lamp.cap = {0.25, 0.6, 0.7};
-    lamp.stem = {0.35, 0.55, 0.6};
+    lamp.cap = {0.06, 0.30, 0.42};
+    lamp.stem = {0.16, 0.32, 0.38};
     lamp.gills = {0.5, 0.9, 1.0};
     lamp.height = 0.035;
     lamp.cap_radius = 0.011;
     lamp.cap_height = 0.013;
     lamp.stem_radius = 0.0025;
     lamp.dots = 0;
-    lamp.detail = 9;
+    lamp.detail = 7;
     MeshBuilder m;
     add_mushroom(m, random, lamp);
     const Index mesh = forest.add_mesh("glowing mushroom", m.take(glow));
@@ -322,22 +349,22 @@ void add_mushrooms(Assembly& forest) {
         forest.add_node("glowing mushroom", kNone,
                         placed(on_ground(foot.x, foot.y), random.angle(), random.range(0.8, 1.5)), mesh);
     forest.add_point_light("blue glow left", kNone, on_ground(-0.385, -0.05) + glm::dvec3(0.0, 0.06, 0.04),
-                           {0.2f, 0.75f, 1.0f}, 0.012);
+                           {0.2f, 0.75f, 1.0f}, 0.008);
     forest.add_point_light("blue glow middle", kNone, on_ground(0.06, -0.01) + glm::dvec3(0.0, 0.05, 0.03),
-                           {0.2f, 0.75f, 1.0f}, 0.006);
+                           {0.2f, 0.75f, 1.0f}, 0.004);
 }
 
 /// Fireflies hover in the wood behind: bright points that the lens turns into disks.
 void add_fireflies(Assembly& forest) {
     Random random(53);
-    const glm::vec3 colors[] = {{30.0f, 17.0f, 5.0f}, {24.0f, 22.0f, 7.0f}, {9.0f, 24.0f, 20.0f}};
+    const glm::vec3 colors[] = {{9.0f, 4.6f, 1.1f}, {7.0f, 5.6f, 1.5f}, {1.6f, 5.5f, 4.6f}};
     std::vector<Index> meshes;
     for (const glm::vec3& color : colors) {
         Material light = painted("firefly");
         light.base_color = {0.0f, 0.0f, 0.0f, 1.0f};
         light.emissive = color;
         MeshBuilder m;
-        m.ellipsoid(glm::dvec3(0.0), glm::dvec3(1.0), 8, 6);
+        m.ellipsoid(glm::dvec3(0.0), glm::dvec3(1.0), 7, 5);
         meshes.push_back(forest.add_mesh("firefly", m.take(forest.add(light))));
     }
     for (int k = 0; k < 64; ++k) {
@@ -346,9 +373,9 @@ void add_fireflies(Assembly& forest) {
                             0.05 + 0.33 * depth * std::pow(random.uniform(), 1.3) + 0.03 * depth, 0.62 - depth};
         const glm::dvec3 swing = 0.05 * random.direction();
         const double phase = random.angle();
-        const Index node =
-            forest.add_node("firefly", kNone, placed(at, 0.0, 0.0019 * random.range(0.7, 1.3) * std::sqrt(depth)),
-                            meshes[std::size_t(k % 5 == 4 ? 2 : k % 2)]);
+        const Index node = forest.add_node(
+            "firefly", kNone, placed(at, 0.0, (0.0012 + 0.0048 * (depth - kFocus)) * random.range(0.75, 1.2)),
+            meshes[std::size_t(k % 5 == 4 ? 2 : k % 2)]);
         forest.animate_translation(node, 9, [=](double t) {
             return at + swing * std::sin(1.9 * t + phase) +
                    glm::dvec3(0.0, 0.02 * std::sin(2.7 * t + 2.0 * phase), 0.0);
@@ -400,7 +427,7 @@ void add_falling_petals(Assembly& forest) {
 }
 
 void add_the_fairy(Assembly& forest) {
-    constexpr double kScale = 0.0145;
+    constexpr double kScale = 0.0185;
     const Index root = forest.add_node("flight", kNone, placed(fairy_path(0.0), 0.0, kScale));
     forest.animate_translation(root, 25, fairy_path);
     forest.animate_rotation(root, 25, [](double t) {
@@ -447,7 +474,7 @@ void add_camera_and_light(Assembly& forest) {
 
     forest.add_sun("evening sun", {0.75, 0.42, -0.22}, {1.0f, 0.66f, 0.36f}, 6.5);
     forest.add_sun("sky", {-0.25, 1.0, 0.35}, {0.45f, 0.65f, 1.0f}, 1.1);
-    forest.add_sun("fill", {-0.6, 0.25, 1.0}, {1.0f, 0.78f, 0.62f}, 0.8);
+    forest.add_sun("fill", {-0.6, 0.25, 1.0}, {1.0f, 0.80f, 0.66f}, 1.1);
 }
 
 }  // namespace

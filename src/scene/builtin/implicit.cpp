@@ -31,7 +31,8 @@ double ImplicitBody::distance(glm::dvec3 p) const {
     groups.fill(kFar);
     for (const Limb& limb : limbs_) {
         double& d = groups[static_cast<std::size_t>(limb.group)];
-        d = smooth_min(d, limb_distance(limb, p), blend_);
+        // Along a chain a full blend would swell every joint.
+        d = smooth_min(d, limb_distance(limb, p), limb.group == 0 ? blend_ : 0.3 * blend_);
     }
     double nearest = groups[0];
     for (std::size_t i = 1; i < groups.size(); ++i)
@@ -51,7 +52,12 @@ void ImplicitBody::dress(Primitive& mesh, glm::dvec3 p, bool skinned) const {
     double sum = 0.0;
     std::map<int, double> bones;
     const double nearest = distance(p);
+    const auto closest = std::min_element(limbs_.begin(), limbs_.end(), [&](const Limb& a, const Limb& b) {
+        return limb_distance(a, p) < limb_distance(b, p);
+    });
     for (const Limb& limb : limbs_) {
+        // A finger neither takes its neighbour's colour nor follows its bone.
+        if (closest->group != 0 && limb.group != 0 && limb.group != closest->group) continue;
         const double x = (limb_distance(limb, p) - nearest) / blend_;
         const double weight = std::pow(std::max(0.0, 1.0 - 0.6 * x), 3) + 1e-9;
         color += weight * limb.color;

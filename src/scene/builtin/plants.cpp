@@ -99,7 +99,7 @@ void add_grass_tuft(MeshBuilder& grass, Random& random, int blades, double heigh
         blade.bend = random.range(0.3, 1.5);
         blade.fold = 0.3;
         blade.widest = 0.25;
-        blade.segments = 4;
+        blade.segments = 3;
         const glm::dvec3 color = palette.pick(random);
         grass.blade(blade, [&](double, double v, glm::dvec3) { return color * (0.25 + 0.9 * v); });
     }

@@ -32,7 +32,7 @@ struct MushroomStyle {
     double height = 0.08, cap_radius = 0.045, cap_height = 0.03, stem_radius = 0.011;
     glm::dvec3 cap{0.55, 0.03, 0.02}, stem{0.75, 0.68, 0.55}, gills{0.6, 0.5, 0.38};
     int dots = 14;
-    int detail = 20;
+    int detail = 14;
 };
 void add_mushroom(MeshBuilder& mushroom, Random& random, const MushroomStyle& style);
 

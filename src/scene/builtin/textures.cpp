@@ -47,6 +47,30 @@ Image checker_texture(std::string name, int size, int squares, glm::dvec3 dark, 
     });
 }
 
+Image stripe_texture(std::string name, int size, int stripes, glm::dvec3 dark, glm::dvec3 light) {
+    return paint(std::move(name), size, size, [&](double u, double v) {
+        const bool odd = (static_cast<int>((u + v) * 2 * stripes) & 1) != 0;
+        return glm::dvec4(odd ? light : dark, 1.0);
+    });
+}
+
+Image target_texture(std::string name, int size, int rings, glm::dvec3 dark, glm::dvec3 light) {
+    return paint(std::move(name), size, size, [&](double u, double v) {
+        const double r = 2.1 * glm::length(glm::dvec2(u - 0.5, v - 0.5));
+        const bool odd = r < 1.0 && (static_cast<int>(r * 2 * rings) & 1) == 0;
+        return glm::dvec4(odd ? light : dark, 1.0);
+    });
+}
+
+Image soft_spot_texture(std::string name, glm::dvec3 color, double alpha) {
+    return paint(std::move(name), 64, 64, [&](double u, double v) {
+        const double x = 2.0 * u - 1.0, y = 2.0 * v - 1.0;
+        const double fall =
+            (1.0 - glm::smoothstep(0.45, 1.0, std::abs(x))) * (1.0 - glm::smoothstep(0.3, 1.0, std::abs(y)));
+        return glm::dvec4(color, alpha * fall);
+    });
+}
+
 Image bark_texture() {
     return paint("bark", 128, 256, [](double u, double v) {
         // Noise on a cylinder, cut at a meridian: mixing the two ends makes it repeat in u and in v.
@@ -55,6 +79,37 @@ Image bark_texture() {
         const double b = glm::mix(furrows(u, v - 1.0), furrows(u - 1.0, v - 1.0), u);
         const double n = glm::mix(a, b, v);
         return glm::dvec4(glm::dvec3(0.25 + 0.75 * glm::smoothstep(0.25, 0.7, n)), 1.0);
+    });
+}
+
+Image litter_texture() {
+    constexpr int kSize = 256, kFlecks = 420;
+    // Flecks, drawn one over the other; the picture repeats, so what leaves it on one side comes back on the other.
+    std::vector<double> fleck_shade(std::size_t(kSize) * kSize, -1.0);
+    Random random(3);
+    for (int i = 0; i < kFlecks; ++i) {
+        const double x = random.uniform(), y = random.uniform(), a = random.angle(), length = random.range(0.01, 0.035);
+        const glm::dvec2 along{std::cos(a) / length, std::sin(a) / length};
+        const double width = random.range(0.25, 0.6), shade = random.range(0.35, 1.0);
+        const int reach = static_cast<int>(std::ceil(length * kSize)), cx = static_cast<int>(x * kSize),
+                  cy = static_cast<int>(y * kSize);
+        for (int py = cy - reach; py <= cy + reach; ++py)
+            for (int px = cx - reach; px <= cx + reach; ++px) {
+                const glm::dvec2 d{(px + 0.5) / kSize - x, (py + 0.5) / kSize - y};
+                const double s = glm::dot(d, along), t = d.x * along.y - d.y * along.x;
+                const int texel = (py & (kSize - 1)) * kSize + (px & (kSize - 1));
+                if (std::abs(t) < width * (1.0 - s * s))
+                    fleck_shade[std::size_t(texel)] = shade * (0.9 + 0.2 * std::abs(t));
+            }
+    }
+    return paint("litter", kSize, kSize, [&](double u, double v) {
+        const auto crumbs = [](double x, double y) { return fractal_noise({24.0 * x, 24.0 * y}, 4); };
+        const double a = glm::mix(crumbs(u, v), crumbs(u - 1.0, v), u);
+        const double b = glm::mix(crumbs(u, v - 1.0), crumbs(u - 1.0, v - 1.0), u);
+        const double crumb = 0.35 + 0.55 * glm::smoothstep(0.3, 0.7, glm::mix(a, b, v));
+        const double fleck =
+            fleck_shade[std::size_t(static_cast<int>(v * kSize) * kSize + static_cast<int>(u * kSize))];
+        return glm::dvec4(glm::dvec3(fleck < 0.0 ? crumb : fleck), 1.0);
     });
 }
 

@@ -8,8 +8,20 @@ namespace pentaprism::builtin {
 /// Two linear colours in `squares` x `squares` fields with hard edges.
 Image checker_texture(std::string name, int size, int squares, glm::dvec3 dark, glm::dvec3 light);
 
+/// Bands of two linear colours across the diagonal, repeating.
+Image stripe_texture(std::string name, int size, int stripes, glm::dvec3 dark, glm::dvec3 light);
+
+/// Rings of two linear colours about the centre, within a frame of the first.
+Image target_texture(std::string name, int size, int rings, glm::dvec3 dark, glm::dvec3 light);
+
+/// A blot of one colour, opaque in the middle and clear at the rim.
+Image soft_spot_texture(std::string name, glm::dvec3 color, double alpha);
+
 /// Grey furrows along v, to be tinted by vertex colours.
 Image bark_texture();
+
+/// Grey crumbs and flecks, repeating, to be tinted by vertex colours.
+Image litter_texture();
 
 /// A pale midrib (u = 0.5) with side veins, nearly white: to be tinted by vertex colours. v runs from stalk to tip.
 Image leaf_texture();

@@ -1,0 +1,240 @@
+#include "cli/options.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fmt/format.h>
+#include <limits>
+#include <memory>
+#include <pentaprism/render.h>
+#include <utility>
+
+#include "cli/values.h"
+
+namespace pentaprism::cli {
+namespace {
+
+constexpr int kIntMax = std::numeric_limits<int>::max();
+
+bool ends_with(const std::string& text, const std::string& end) {
+    return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// An option of which one value is built and others are planned.
+void add_partly_built(CLI::App& command, const std::string& group, const std::string& name,
+                      const std::string& description, const std::string& built, std::vector<std::string> planned) {
+    std::string form = built;
+    for (const std::string& value : planned) form += "|" + value;
+    add_value(command, group, name, form, description + " (only " + built + " is built)", [=](const std::string& text) {
+        if (text == built) return;
+        // trapezoid:OPEN,CLOSE is told by what is before the colon.
+        const std::string word = text.substr(0, text.find(':'));
+        for (const std::string& value : planned) {
+            if (value.substr(0, value.find(':')) == word || value == "FILE") refuse_as_planned(name + " " + text);
+        }
+        throw Error(ErrorKind::kUsage, fmt::format("{}: '{}' is not one of {}", name, text, form));
+    });
+}
+
+void add_image_options(CLI::App& command, ImageSettings& image) {
+    const std::string group = "Image";
+    add_value(command, group, "-r,--resolution", "WxH", "Size in pixels, 1 to 16384 (default 1280x720)",
+              [&](const std::string& text) { std::tie(image.width, image.height) = parse_size("--resolution", text); });
+    add_value(command, group, "-s,--spp", "N", "Samples per pixel, 1 to 4096 (default 16)",
+              [&](const std::string& text) { image.spp = static_cast<int>(parse_whole("--spp", text, 1, 4096)); });
+    add_value(command, group, "--filter", "box|tent|gaussian|blackman-harris",
+              "Reconstruction filter (default blackman-harris, radius 1.5 pixels)", [&](const std::string& text) {
+                  image.filter = parse_choice<Filter>("--filter", text,
+                                                      {{"box", Filter::kBox},
+                                                       {"tent", Filter::kTent},
+                                                       {"gaussian", Filter::kGaussian},
+                                                       {"blackman-harris", Filter::kBlackmanHarris}});
+              });
+    add_value(command, group, "--crop", "X0,X1,Y0,Y1",
+              "Render this part alone; pixels, X1 and Y1 excluded (default: all)", [&](const std::string& text) {
+                  const auto values = parse_numbers("--crop", text, 4, "X0,X1,Y0,Y1");
+                  std::array<int, 4> crop{};
+                  for (std::size_t i = 0; i < 4; ++i) {
+                      crop[i] = static_cast<int>(std::clamp(values[i], -1e6, 1e6));
+                      if (crop[i] != values[i]) {
+                          throw Error(ErrorKind::kUsage, fmt::format("--crop: '{}' are not four whole numbers", text));
+                      }
+                  }
+                  image.crop = crop;
+              });
+    add_value(command, group, "--exposure", "EV", "Colours are multiplied by 2^EV (default 0)",
+              [&](const std::string& text) { image.exposure = parse_number("--exposure", text); });
+    add_value(command, group, "--tonemap", "none|aces|filmic", "Tone curve of PNG files (default aces)",
+              [&](const std::string& text) {
+                  image.tonemap = parse_choice<ToneMap>(
+                      "--tonemap", text,
+                      {{"none", ToneMap::kNone}, {"aces", ToneMap::kAces}, {"filmic", ToneMap::kFilmic}});
+              });
+    add_value(command, group, "--background", "R,G,B",
+              "Linear colour behind the scene (default: the scene's, else 0,0,0)", [&](const std::string& text) {
+                  if (ends_with(text, ".hdr") || ends_with(text, ".exr")) {
+                      refuse_as_planned("--background with an environment picture");
+                  }
+                  const auto values = parse_numbers("--background", text, 3, "R,G,B");
+                  image.background = {static_cast<float>(values[0]), static_cast<float>(values[1]),
+                                      static_cast<float>(values[2])};
+              });
+}
+
+/// The many options that are one number.
+void add_number(CLI::App& command, const std::string& group, const std::string& name, const std::string& unit,
+                const std::string& description, std::optional<double>& value) {
+    add_value(command, group, name, unit, description,
+              [&value, name](const std::string& text) { value = parse_number(name, text); });
+}
+
+void add_camera_options(CLI::App& command, CameraSettings& camera) {
+    const std::string group = "Camera";
+    add_value(command, group, "--camera", "NAME|INDEX", "Camera (default: the first, else one that frames the scene)",
+              [&](const std::string& text) { camera.camera = text; });
+    add_number(command, group, "--focal-length", "MM", "Focal length in millimetres (default: the camera's)",
+               camera.focal_length_mm);
+    add_number(command, group, "--sensor-width", "MM", "Sensor width in millimetres (default: the camera's, else 36)",
+               camera.sensor_width_mm);
+}
+
+void add_lens_options(CLI::App& command, CameraSettings& camera) {
+    const std::string group = "Lens";
+    add_number(command, group, "--fstop", "N", "f-number (default: the camera's, else a pinhole)", camera.fstop);
+    add_number(command, group, "--lens-radius", "M", "Radius of the lens in metres, instead of --fstop",
+               camera.lens_radius);
+    add_number(command, group, "--focus-distance", "M",
+               "Distance in focus in metres (default: the camera's, else the middle of what is seen)",
+               camera.focus_distance);
+    add_value(command, group, "--focus-object", "NODE", "Focus on the middle of this node",
+              [&](const std::string& text) { camera.focus_object = text; });
+    add_value(command, group, "--focus-pixel", "X,Y", "Focus on what this pixel shows", [&](const std::string& text) {
+        const auto values = parse_numbers("--focus-pixel", text, 2, "X,Y");
+        camera.focus_pixel = {values[0], values[1]};
+    });
+    add_value(command, group, "--aperture-blades", "N",
+              "Blades of the iris, 3 or more; 0: a disk (default: the camera's, else 0)", [&](const std::string& text) {
+                  camera.aperture_blades = static_cast<int>(parse_whole("--aperture-blades", text, 0, kIntMax));
+              });
+    add_number(command, group, "--aperture-rotation", "DEG", "Turns the iris; degrees (default: the camera's, else 0)",
+               camera.aperture_rotation_deg);
+    add_number(command, group, "--aperture-ratio", "R",
+               "Height over width of the circle of confusion (default: the camera's, else 1)", camera.aperture_ratio);
+    add_planned_value(command, group, "--focus-range", "NEAR,FAR", "Keep this range of depth sharp; metres");
+    add_planned_value(command, group, "--max-foreground-blur", "PX",
+                      "Largest blur in front of the focus, a radius in pixels");
+    command
+        .add_flag_callback(
+            "--no-defocus", [&] { camera.defocus = false; }, "A pinhole, whatever else is said")
+        ->group(group);
+}
+
+void add_shutter_options(CLI::App& command, ShutterSettings& shutter) {
+    const std::string group = "Shutter";
+    add_number(command, group, "--shutter", "F", "Open time in frames (default: the camera's, else 0.5)",
+               shutter.shutter);
+    add_value(command, group, "--shutter-position", "start|center|end",
+              "Where the frame's time lies in it (default center)", [&](const std::string& text) {
+                  shutter.position = parse_choice<ShutterPosition>("--shutter-position", text,
+                                                                   {{"start", ShutterPosition::kStart},
+                                                                    {"center", ShutterPosition::kCenter},
+                                                                    {"end", ShutterPosition::kEnd}});
+              });
+    add_partly_built(command, group, "--shutter-curve", "How the shutter opens and closes", "box",
+                     {"trapezoid:OPEN,CLOSE", "FILE"});
+    add_partly_built(command, group, "--rolling-shutter", "The edge that is read out first", "none",
+                     {"top", "bottom", "left", "right"});
+    add_planned_value(command, group, "--rolling-shutter-duration", "F", "Time of the read-out in frames");
+    add_value(command, group, "--motion-segments", "auto|N",
+              "Straight pieces of each path, 1 to 64 (default auto: error below 0.1 pixel)",
+              [&](const std::string& text) {
+                  shutter.motion_segments =
+                      text == "auto" ? 0 : static_cast<int>(parse_whole("--motion-segments", text, 1, 64));
+              });
+    command
+        .add_flag_callback(
+            "--no-motion-blur", [&] { shutter.motion_blur = false; }, "Everything stands still at mid-shutter")
+        ->group(group);
+}
+
+void add_animation_options(CLI::App& command, AnimationSettings& animation) {
+    const std::string group = "Animation";
+    add_value(command, group, "--fps", "N", "Frames per second: frame K is at K/N seconds (default 24)",
+              [&](const std::string& text) { animation.fps = parse_number("--fps", text); });
+    add_value(command, group, "--animation", "NAME|INDEX|all", "Clips that play (default all)",
+              [&](const std::string& text) { animation.animation = text; });
+}
+
+void add_method_options(CLI::App& command, MethodSettings& method) {
+    const std::string group = "Method";
+    std::string names;
+    for (const CullingChoice& choice : culling_tests()) names += (names.empty() ? "" : ", ") + choice.name;
+    add_value(command, group, "--culling", "NAME", fmt::format("Culling test (default auto): {}", names),
+              [&](const std::string& text) {
+                  std::vector<std::pair<std::string, std::string>> choices;
+                  for (const CullingChoice& choice : culling_tests()) choices.emplace_back(choice.name, choice.name);
+                  method.culling = parse_choice<std::string>("--culling", text, choices);
+              });
+    add_partly_built(command, group, "--visibility", "How visibility is sampled", "stochastic",
+                     {"accumulation", "interleaved", "raytrace"});
+    add_partly_built(command, group, "--backend", "What computes", "cpu", {"gl"});
+    add_partly_built(command, group, "--shading", "How often visible surfaces are shaded", "pixel",
+                     {"sample", "decoupled"});
+    add_planned_value(command, group, "--sampler", "NAME", "Sample pattern");
+    add_value(command, group, "--seed", "N", "Seed of the sample pattern (default 0)", [&](const std::string& text) {
+        method.seed =
+            static_cast<std::uint32_t>(parse_whole("--seed", text, 0, std::numeric_limits<std::uint32_t>::max()));
+    });
+    add_value(
+        command, group, "-t,--threads", "N", "Processors to use (default: PENTAPRISM_THREADS, else all)",
+        [&](const std::string& text) { method.threads = static_cast<int>(parse_whole("--threads", text, 1, 1024)); });
+}
+
+}  // namespace
+
+CLI::Option* add_value(CLI::App& command, const std::string& group, const std::string& names, const std::string& form,
+                       const std::string& description, std::function<void(const std::string&)> take) {
+    return command.add_option_function<std::string>(names, std::move(take), description)->type_name(form)->group(group);
+}
+
+void refuse_as_planned(const std::string& what) {
+    throw Error(ErrorKind::kUsage, what + " is not built yet (planned: see CHANGELOG)");
+}
+
+void add_planned_value(CLI::App& command, const std::string& group, const std::string& name, const std::string& form,
+                       const std::string& description) {
+    add_value(command, group, name, form, description + " (not built yet)",
+              [name](const std::string&) { refuse_as_planned(name); });
+}
+
+void add_planned_flag(CLI::App& command, const std::string& group, const std::string& name,
+                      const std::string& description) {
+    command
+        .add_flag_callback(
+            name, [name] { refuse_as_planned(name); }, description + " (not built yet)")
+        ->group(group);
+}
+
+void add_scene_argument(CLI::App& command, std::string& scene) {
+    command.add_option("SCENE", scene, "A .gltf, .glb or .obj file, or builtin:NAME (see `pentaprism scene --list`)")
+        ->required()
+        ->type_name("");
+}
+
+void add_render_options(CLI::App& command, RenderSettings& settings) {
+    add_image_options(command, settings.image);
+    add_camera_options(command, settings.camera);
+    add_lens_options(command, settings.camera);
+    add_shutter_options(command, settings.shutter);
+    add_animation_options(command, settings.animation);
+    add_method_options(command, settings.method);
+}
+
+void complete_settings(RenderSettings& settings) {
+    if (const char* text = std::getenv("PENTAPRISM_THREADS"); text && *text && settings.method.threads == 0) {
+        settings.method.threads = static_cast<int>(parse_whole("PENTAPRISM_THREADS", text, 1, 1024));
+    }
+    cpu_target();  // a wrong PENTAPRISM_ISA is said before any work
+    validate(settings);
+}
+
+}  // namespace pentaprism::cli

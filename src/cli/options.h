@@ -1,0 +1,31 @@
+#pragma once
+// The options that decide how a frame looks: `render` and `verify` share them.
+
+#include <CLI/App.hpp>
+#include <functional>
+#include <pentaprism/settings.h>
+#include <string>
+#include <vector>
+
+namespace pentaprism::cli {
+
+/// An option with one value. `take` may throw Error(kUsage).
+CLI::Option* add_value(CLI::App& command, const std::string& group, const std::string& names, const std::string& form,
+                       const std::string& description, std::function<void(const std::string&)> take);
+
+/// An option or value of the contract that is refused by name until its feature is built.
+void add_planned_value(CLI::App& command, const std::string& group, const std::string& names, const std::string& form,
+                       const std::string& description);
+void add_planned_flag(CLI::App& command, const std::string& group, const std::string& names,
+                      const std::string& description);
+[[noreturn]] void refuse_as_planned(const std::string& what);
+
+void add_scene_argument(CLI::App& command, std::string& scene);
+
+/// Groups image, camera, lens, shutter, animation and method. `settings` must outlive the parsing.
+void add_render_options(CLI::App& command, RenderSettings& settings);
+
+/// After parsing: fills in what the environment says, and throws Error(kUsage) for what has no meaning.
+void complete_settings(RenderSettings& settings);
+
+}  // namespace pentaprism::cli

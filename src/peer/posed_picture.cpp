@@ -1,0 +1,16 @@
+#include "peer/posed_picture.h"
+
+#include "render/visibility.h"
+#include "scene/texture.h"
+
+namespace pentaprism {
+
+PosedPicture pose_picture(const Scene& scene, const RenderSettings& settings, double frame) {
+    const View view = make_view(scene, settings, frame);
+    Frame posed = pose_frame(scene, view, choose_animations(scene, settings.animation.animation), settings.shutter);
+    posed.textures = make_textures(scene);
+    SampleTable samples(settings.image.spp, settings.method.seed, view.lens, grouping_for(posed));
+    return {std::move(posed), std::move(samples)};
+}
+
+}  // namespace pentaprism

@@ -1,0 +1,250 @@
+// The frame loop: the only code that knows the order of the stages.
+//
+//   scene -> view, frame -> bins -> [ tile: cover -> shade -> film ] -> rows
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <pentaprism/error.h>
+#include <pentaprism/render.h>
+
+#include "base/cpu.h"
+#include "base/parallel.h"
+#include "base/pool.h"
+#include "render/visibility.h"
+#include "resolve/film.h"
+#include "scene/texture.h"
+#include "shade/shade_tile.h"
+
+namespace pentaprism {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds(Clock::duration duration) { return std::chrono::duration<double, std::milli>(duration).count(); }
+
+double peak_megabytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) / 1024.0;  // Linux counts kilobytes
+}
+
+PixelRect crop_of(const ImageSettings& image) {
+    if (!image.crop) return {0, image.width, 0, image.height};
+    return {(*image.crop)[0], (*image.crop)[1], (*image.crop)[2], (*image.crop)[3]};
+}
+
+PixelRect grown(const PixelRect& rect, int reach, int width, int height) {
+    return {std::max(0, rect.x0 - reach), std::min(width, rect.x1 + reach), std::max(0, rect.y0 - reach),
+            std::min(height, rect.y1 + reach)};
+}
+
+// glm matrices are column-major, as FrameInfo's.
+void store(const glm::dmat4& matrix, std::array<double, 16>& out) {
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row) out[4 * column + row] = matrix[column][row];
+}
+
+FrameInfo frame_info(const Frame& frame, const RenderSettings& settings, double number, const PixelRect& crop) {
+    const View& view = frame.view;
+    FrameInfo info;
+    info.width = view.width;
+    info.height = view.height;
+    info.x0 = crop.x0, info.x1 = crop.x1, info.y0 = crop.y0, info.y1 = crop.y1;
+    info.frame = number;
+    info.fps = settings.animation.fps;
+    info.shutter_open = view.shutter.open;
+    info.shutter_close = view.shutter.close;
+    info.lens_radius = view.lens.radius;
+    info.focus_distance = view.lens.focus_distance;
+    info.fstop = view.lens.fstop;
+    info.focal_length_mm = view.focal_length_mm;
+    info.camera = view.camera_name;
+    for (const Part& part : frame.parts) info.max_motion_segments = std::max(info.max_motion_segments, part.segments);
+    const glm::dmat4 to_camera = world_to_camera(view, frame.middle);
+    glm::dmat4 projection(0.0);
+    projection[0][0] = view.fx * 2.0 / view.width;
+    projection[1][1] = view.fy * 2.0 / view.height;
+    projection[2][2] = -1.0;
+    projection[2][3] = view.perspective ? -1.0 : 0.0;
+    projection[3][3] = view.perspective ? 0.0 : 1.0;
+    store(to_camera, info.world_to_camera);
+    store(projection * to_camera, info.world_to_ndc);
+    return info;
+}
+
+glm::vec3 background_of(const Scene& scene, const ImageSettings& image) {
+    if (image.background) return {(*image.background)[0], (*image.background)[1], (*image.background)[2]};
+    return scene.background.value_or(glm::vec3(0.0f));
+}
+
+// Tallest band of rows whose film stays small whatever the width; a usual picture is a single band.
+int band_rows(const PixelRect& rect) {
+    constexpr int kFilmPixels = 1 << 23;
+    const int rows = std::max(1, kFilmPixels / std::max(1, rect.x1 - rect.x0) / kCellSize) * kCellSize;
+    return std::min(rows, (rect.y1 - rect.y0 + 2 * kCellSize - 1) / kCellSize * kCellSize + kCellSize);
+}
+
+// Tells the caller how much is done, from one thread at a time, and stops the frame when it says so.
+class ProgressMeter {
+  public:
+    ProgressMeter(const Progress& progress, std::size_t total) : progress_(progress), total_(total) {}
+    void step() {
+        const std::size_t done = ++done_;
+        if (!progress_) return;
+        const std::unique_lock<std::mutex> lock(mutex_, std::try_to_lock);
+        if (lock && !progress_(static_cast<double>(done) / static_cast<double>(total_)))
+            throw Error(ErrorKind::kRender, "interrupted");
+    }
+
+  private:
+    const Progress& progress_;
+    std::size_t total_;
+    std::atomic<std::size_t> done_{0};
+    std::mutex mutex_;
+};
+
+// What one thread needs to take a tile from its bin to the film, and what that cost.
+struct TileWorker {
+    Hits hits;
+    TileShader shader;
+    TileShade shade;
+};
+
+struct TileCosts {
+    std::atomic<std::int64_t> cover_ns{0}, shade_ns{0}, resolve_ns{0}, tested{0}, covered{0}, shaded{0};
+};
+
+std::int64_t nanoseconds(Clock::duration duration) {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(duration).count();
+}
+
+void render_tile(const Visibility& visibility, const ShadingScene& shading, const SampleTable& samples, const Tile& tile,
+                 TileWorker& worker, Film& film, TileCosts& costs) {
+    const auto start = Clock::now();
+    CoverCounts counts;
+    visibility.cover(tile, worker.hits, counts);
+    const auto covered = Clock::now();
+    costs.shaded += worker.shader.shade(shading, samples, tile, worker.hits, worker.shade);
+    const auto shaded = Clock::now();
+    film.add(tile, samples, worker.hits, worker.shade);
+    const auto resolved = Clock::now();
+    costs.cover_ns += nanoseconds(covered - start);
+    costs.shade_ns += nanoseconds(shaded - covered);
+    costs.resolve_ns += nanoseconds(resolved - shaded);
+    costs.tested += counts.tested;
+    costs.covered += counts.covered;
+}
+
+void deliver(Film& film, int rendered_to, bool last, RowSink& sink) {
+    const PixelRows rows = film.take_rows(rendered_to, last);
+    if (rows.count > 0) sink.rows(rows);
+}
+
+}  // namespace
+
+Renderer::Renderer(const Scene& scene) : scene_(scene), textures_(make_textures(scene)) {}
+Renderer::~Renderer() = default;
+
+void Renderer::render(const RenderSettings& settings, double number, RowSink& sink, RenderStats& stats, const Progress& progress) {
+    validate(settings);
+    const auto start = Clock::now();
+    set_thread_count(settings.method.threads);
+    stats = {};
+    stats.isa = isa_name(cpu_isa());
+    stats.threads = thread_count();
+
+    const View view = make_view(scene_, settings, number);
+    const std::vector<Index> animations = choose_animations(scene_, settings.animation.animation);
+    Frame frame = pose_frame(scene_, view, animations, settings.shutter);
+    frame.textures = textures_;
+    const auto posed = Clock::now();
+    const SampleTable samples(settings.image.spp, settings.method.seed, view.lens, grouping_for(frame));
+    const auto sampled = Clock::now();
+
+    const PixelRect crop = crop_of(settings.image);
+    FilmSettings film_settings{crop.x0, crop.y0, crop.x1, crop.y1, 0, settings.image.spp, settings.image.filter,
+                               background_of(scene_, settings.image), settings.image.exposure};
+    film_settings.band_rows = band_rows(crop);
+    Film film(film_settings);
+    const PixelRect rendered = grown(crop, film.reach(), view.width, view.height);
+    const Visibility visibility(frame, samples, settings.method, rendered);
+    const auto binned = Clock::now();
+    const ShadingScene shading(frame);
+    const auto prepared = Clock::now();
+
+    sink.begin(frame_info(frame, settings, number, crop));
+    const std::vector<Tile>& tiles = visibility.tiles();
+    ProgressMeter meter(progress, tiles.size());
+    Pool<TileWorker> workers;
+    TileCosts costs;
+    for (std::size_t first = 0; first < tiles.size();) {
+        const int band_end = tiles[first].y0 + film_settings.band_rows;
+        std::size_t last = first;
+        while (last < tiles.size() && tiles[last].y1 <= band_end) ++last;
+        parallel_for(last - first, [&](std::size_t i) {
+            const auto worker = workers.lease();
+            render_tile(visibility, shading, samples, tiles[first + i], *worker, film, costs);
+            meter.step();
+        });
+        deliver(film, tiles[last - 1].y1, last == tiles.size(), sink);
+        first = last;
+    }
+    const auto done = Clock::now();
+
+    const double per_thread = 1e-6 / stats.threads;
+    const double cover_ms = static_cast<double>(costs.cover_ns) * per_thread;
+    stats.times_ms = {{"pose", milliseconds(posed - start)},
+                      {"samples", milliseconds(sampled - posed)},
+                      {"bin", milliseconds(binned - sampled)},
+                      {"prepare_shading", milliseconds(prepared - binned)},
+                      {"cover", cover_ms},
+                      {"visibility", milliseconds(binned - sampled) + cover_ms},
+                      {"shade", static_cast<double>(costs.shade_ns) * per_thread},
+                      {"resolve", static_cast<double>(costs.resolve_ns) * per_thread},
+                      {"total", milliseconds(done - start)}};
+    stats.triangles = frame.triangle_count();
+    stats.moving_triangles = 0;
+    for (const Part& part : frame.parts)
+        stats.moving_triangles += std::int64_t{part.triangle_count} * (part.moves ? part.segments : 1);
+    stats.samples = std::int64_t{crop.x1 - crop.x0} * (crop.y1 - crop.y0) * settings.image.spp;
+    stats.tested = costs.tested;
+    stats.covered = costs.covered;
+    stats.shaded = costs.shaded;
+    stats.peak_mb = peak_megabytes();
+}
+
+void render_frame(const Scene& scene, const RenderSettings& settings, double frame, RowSink& sink, RenderStats& stats,
+                  const Progress& progress) {
+    Renderer(scene).render(settings, frame, sink, stats, progress);
+}
+
+Picture render_picture(const Scene& scene, const RenderSettings& settings, double frame, RenderStats& stats) {
+    struct Collector : RowSink {
+        Picture picture;
+        void begin(const FrameInfo& info) override {
+            picture.info = info;
+            picture.width = info.x1 - info.x0;
+            picture.height = info.y1 - info.y0;
+        }
+        void rows(const PixelRows& band) override {
+            picture.rgba.insert(picture.rgba.end(), band.rgba.begin(), band.rgba.end());
+            picture.z.insert(picture.z.end(), band.z.begin(), band.z.end());
+        }
+    } collector;
+    render_frame(scene, settings, frame, collector, stats);
+    return std::move(collector.picture);
+}
+
+std::vector<CullingChoice> culling_tests() {
+    std::vector<CullingChoice> choices{{"auto", "vectors of samples, strata bounds, depth hierarchy: the fast path"}};
+    for (const CullTest* test : cull_table()) choices.push_back({test->name, test->paper});
+    return choices;
+}
+
+std::string cpu_target() { return isa_name(cpu_isa()); }
+
+}  // namespace pentaprism

@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# Every option and command of the contract is known by name; what is not built yet says so and does nothing.
+source "$(dirname "$0")/lib.bash"
+
+help_of() { "$PENTAPRISM" "$@" --help; }
+
+while read -r option value; do
+    refuses 2 "$option.* is not built yet \(planned: see CHANGELOG\)" render builtin:cubes -o a.exr "$option" $value
+done <<'END'
+--focus-range 1,2
+--max-foreground-blur 5
+--shutter-curve trapezoid:0.1,0.9
+--rolling-shutter top
+--rolling-shutter-duration 0.5
+--visibility accumulation
+--visibility interleaved
+--visibility raytrace
+--backend gl
+--shading sample
+--shading decoupled
+--sampler sobol
+--aov depth,normal
+--sharp
+--dataset out
+--samples dump
+--resume
+--shard 1/4
+--background sky.hdr
+--background sky.exr
+END
+for command in bench compare merge view; do
+    refuses 2 "$command is not built yet \(planned: see CHANGELOG\)" "$command" some thing --option
+    check "$command is in the help" grep -q "^  $command .*not built yet" <(help_of)
+done
+check "no file was made" test ! -e a.exr
+
+# The names that users' scripts rely on.
+render_help=$(help_of render)
+for option in -r,--resolution -s,--spp --filter --crop --exposure --tonemap --background --camera --focal-length --sensor-width \
+    --fstop --lens-radius --focus-distance --focus-object --focus-pixel --aperture-blades --aperture-rotation --aperture-ratio \
+    --focus-range --max-foreground-blur --no-defocus --shutter --shutter-position --shutter-curve --rolling-shutter \
+    --rolling-shutter-duration --motion-segments --no-motion-blur --frame -f,--frames --fps --animation --culling --visibility \
+    --backend --shading --sampler --seed -t,--threads --aov --sharp --dataset --stats --samples --overwrite --skip-existing \
+    --resume --shard --progress -q,--quiet --log-level -o,--output; do
+    check "render --help shows $option" grep -qE -- "^ +$option( |$)" <<<"$render_help"
+done
+finish
