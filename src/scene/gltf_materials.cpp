@@ -99,10 +99,11 @@ void read_emission(Document& document, const Scene& scene, const Object& object,
     if (const auto color = object.numbers("emissiveFactor", 3); !color.empty())
         material.emissive = {color[0], color[1], color[2]};
     material.emissive_texture = read_texture_info(document, scene, object, "emissiveTexture");
-    if (object.has_extension("KHR_materials_emissive_strength")) {
-        material.emissive *=
-            static_cast<float>(object.extension("KHR_materials_emissive_strength").number("emissiveStrength", 1.0));
-    }
+    if (!object.has_extension("KHR_materials_emissive_strength")) return;
+    const Object extension = object.extension("KHR_materials_emissive_strength");
+    const double strength = extension.number("emissiveStrength", 1.0);
+    if (strength < 0.0) document.warn(extension.where() + " has a negative emissiveStrength; 0 is used");
+    material.emissive *= static_cast<float>(std::max(strength, 0.0));
 }
 
 void read_alpha(const Object& object, Material& material) {

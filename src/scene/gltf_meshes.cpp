@@ -270,8 +270,22 @@ void read_indices(Source& source, Primitive& primitive, int mode) {
     primitive.indices = triangulate(order, mode);
 }
 
+/// A texture without coordinates shows one of its texels everywhere.
+void check_texcoords(Source& source, const Scene& scene, const Primitive& primitive) {
+    if (primitive.material == kNone) return;
+    const Material& material = scene.materials[static_cast<std::size_t>(primitive.material)];
+    for (const TextureRef* texture :
+         {&material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
+          &material.occlusion_texture, &material.emissive_texture}) {
+        const auto set = static_cast<std::size_t>(texture->texcoord);
+        if (texture->image == kNone || !primitive.texcoords[set].empty()) continue;
+        source.document.warn(fmt::format("{} has no TEXCOORD_{}, which its material {} uses", source.object.where(),
+                                         set, primitive.material));
+    }
+}
+
 /// False: nothing of it can be shown.
-bool read_primitive(Document& document, const Object& object, Primitive& primitive) {
+bool read_primitive(Document& document, const Scene& scene, const Object& object, Primitive& primitive) {
     const std::int64_t mode = object.integer("mode", kTriangles);
     if (mode < kPoints || mode > kTriangleFan) object.fail(fmt::format("has an unknown mode {}", mode));
     primitive.material = object.index("material", "materials");
@@ -292,6 +306,7 @@ bool read_primitive(Document& document, const Object& object, Primitive& primiti
     read_normals(source, primitive);
     read_tangents(source, primitive);
     read_texcoords(source, primitive);
+    check_texcoords(source, scene, primitive);
     read_colors(source, primitive);
     read_influences(source, primitive);
     read_targets(source, primitive);
@@ -317,7 +332,7 @@ void read_meshes(Document& document, Scene& scene) {
         int largest_joint = kNone;
         for (const Object& part : primitives) {
             Primitive primitive;
-            const bool shown = read_primitive(document, part, primitive);
+            const bool shown = read_primitive(document, scene, part, primitive);
             for (const std::uint16_t joint : primitive.joints) largest_joint = std::max<int>(largest_joint, joint);
             if (shown) mesh.primitives.push_back(std::move(primitive));
         }
