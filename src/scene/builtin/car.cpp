@@ -54,7 +54,7 @@ glm::dvec3 body_point(double u, double v) {
     return {s.x, middle - rise * k * d, s.half * k * c};
 }
 
-/// Paint: base colour, a stripe along the top, roundels with a number on both sides and on the nose.
+/// Paint: base colour, a stripe along the top, a ring about the nose, roundels with a number on both sides.
 Image livery(std::string name, glm::dvec3 base, glm::dvec3 stripe, int number) {
     // Seven segments: top, upper left, upper right, middle, lower left, lower right, bottom.
     static constexpr int kDigits[] = {0b1110111, 0b0100100, 0b1011101, 0b1101101, 0b0101110,
@@ -71,30 +71,24 @@ Image livery(std::string name, glm::dvec3 base, glm::dvec3 stripe, int number) {
             if (segments[i] && (kDigits[number] >> i & 1) != 0) return true;
         return false;
     };
-    constexpr int kWidth = 512, kHeight = 512;
-    Image image{std::move(name), kWidth, kHeight, {}};
     const Section side = section(0.40);
-    const double per_u = kTwoPi * 0.5 * (side.top - side.bottom);
-    for (int y = 0; y < kHeight; ++y)
-        for (int x = 0; x < kWidth; ++x) {
-            const double u = (x + 0.5) / kWidth, v = (y + 0.5) / kHeight;
-            glm::dvec3 color = base;
-            if (std::abs(u - 0.75) < 0.035) color = stripe;
-            if (v > 0.955) color = stripe;
-            // Roundels: on the sides the height is along u, on the nose the width is.
-            struct Roundel {
-                double u, v, up, right, radius;
-            };
-            for (const Roundel& r : {Roundel{0.5, 0.40, 1.0, -1.0, 0.19}, Roundel{1.0, 0.40, -1.0, 1.0, 0.19},
-                                     Roundel{0.0, 0.40, -1.0, 1.0, 0.19}}) {
-                const double dy = (u - r.u) * per_u * r.up / r.radius, dx = (v - r.v) * 3.72 * r.right / r.radius;
-                if (dx * dx + dy * dy < 1.0)
-                    color = digit(2.5 * dx, 2.5 * dy) ? glm::dvec3(0.01) : glm::dvec3(0.85, 0.84, 0.80);
-            }
-            for (int k = 0; k < 3; ++k) image.texels.push_back(srgb_code(color[k]));
-            image.texels.push_back(255);
+    const double per_u = kTwoPi * 0.5 * (side.top - side.bottom), per_v = section(1.0).x - section(0.0).x;
+    // Where the roundels' middles lie, and which way is up and right there. The right side is cut by the texture's
+    // edge.
+    struct Roundel {
+        double u, v, up, right;
+    };
+    constexpr double kRadius = 0.19;
+    constexpr Roundel kRoundels[] = {{0.5, 0.40, 1.0, -1.0}, {1.0, 0.40, -1.0, 1.0}, {0.0, 0.40, -1.0, 1.0}};
+    return paint(std::move(name), 512, 512, 3, [&](double u, double v) {
+        glm::dvec3 color = std::abs(u - 0.75) < 0.035 || v > 0.955 ? stripe : base;
+        for (const Roundel& r : kRoundels) {
+            const double dy = (u - r.u) * per_u * r.up / kRadius, dx = (v - r.v) * per_v * r.right / kRadius;
+            if (dx * dx + dy * dy < 1.0)
+                color = digit(2.5 * dx, 2.5 * dy) ? glm::dvec3(0.01) : glm::dvec3(0.85, 0.84, 0.80);
         }
-    return image;
+        return glm::dvec4(color, 1.0);
+    });
 }
 
 Primitive body(Index material) {
@@ -198,7 +192,7 @@ Primitive fittings(Index material, glm::dvec3 helmet) {
             {{-0.5, 0.62, 0.18}, 0.02}},
            9, 20);
     m.color = black;
-    m.ellipsoid({1.915, 0.345, 0.0}, {0.05, 0.075, 0.125}, 20, 10);
+    m.ellipsoid({1.925, 0.343, 0.0}, {0.022, 0.062, 0.105}, 18, 8);
     m.color = chrome;
     m.ellipsoid({0.78, 0.62, 0.09}, {0.045, 0.018, 0.045}, 14, 6);
     return m.take(material);

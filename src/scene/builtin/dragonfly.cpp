@@ -354,9 +354,9 @@ void add_far_bank(Assembly& pond) {
     MeshBuilder s;
     s.ellipsoid(glm::dvec3(0.0), glm::dvec3(1.0), 6, 4);
     const Index mesh = pond.add_mesh("glitter", s.take(pond.add(glint)));
-    for (int k = 0; k < 60; ++k) {
+    for (int k = 0; k < 48; ++k) {
         const double depth = 0.42 + 1.3 * std::pow(random.uniform(), 1.5);
-        const double x = random.around(-0.12 * depth, 0.22 * depth);
+        const double x = random.around(-0.33 * depth, 0.17 * depth);
         const double size = 0.0042 * (depth - kFocus) * random.range(0.5, 1.1);
         const Index node =
             pond.add_node("glitter", kNone, {{x, 0.006, 0.22 - depth}, {1.0, 0.0, 0.0, 0.0}, glm::dvec3(size)}, mesh);

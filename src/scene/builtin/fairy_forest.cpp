@@ -89,7 +89,7 @@ void add_evening_sky(Assembly& forest) {
             return glm::dvec3(8.6 * std::sin(a), -0.6 + 6.4 * v, 0.6 - 8.6 * std::cos(a));
         },
         [](double u, double v, glm::dvec3) {
-            const glm::dvec3 high{0.012, 0.030, 0.075}, middle{0.035, 0.100, 0.120}, low{0.16, 0.15, 0.09},
+            const glm::dvec3 high{0.008, 0.024, 0.050}, middle{0.035, 0.100, 0.120}, low{0.16, 0.15, 0.09},
                 halo{0.46, 0.21, 0.07}, glow{1.0, 0.60, 0.20};
             const glm::dvec3 base =
                 glm::mix(glm::mix(low, middle, glm::smoothstep(0.1, 0.3, v)), high, glm::smoothstep(0.25, 0.6, v));
@@ -183,13 +183,21 @@ void add_trees(Assembly& forest) {
         add_tree(forest, random, far, on_ground(foot.x, foot.y), height, 8, 0.3);
     }
 
-    // A twig hangs into the picture close to the lens.
-    Transform pose;
-    pose.translation = {-0.25, 0.335, 0.26};
-    pose.rotation = turn({0.0, 0.0, 1.0}, degrees(-104.0)) * turn({0.0, 1.0, 0.0}, 1.0);
-    pose.scale = glm::dvec3(0.17);
-    const Index twig = forest.add_node("foreground twig", kNone, pose, near.branches[0]);
-    forest.sway(twig, {0.0, 0.0, 1.0}, degrees(4.0), 1.7, 0.4);
+    // Twigs hang into the picture close to the lens.
+    struct Twig {
+        glm::dvec3 at;
+        double angle, size;
+        Index mesh;
+    };
+    for (const Twig& t : {Twig{{-0.25, 0.335, 0.26}, -104.0, 0.17, near.branches[0]},
+                          Twig{{0.235, 0.305, 0.28}, 112.0, 0.15, cherry.branches[1]}}) {
+        Transform pose;
+        pose.translation = t.at;
+        pose.rotation = turn({0.0, 0.0, 1.0}, degrees(t.angle)) * turn({0.0, 1.0, 0.0}, 1.0);
+        pose.scale = glm::dvec3(t.size);
+        const Index twig = forest.add_node("foreground twig", kNone, pose, t.mesh);
+        forest.sway(twig, {0.0, 0.0, 1.0}, degrees(4.0), 1.7, 0.4 + t.size);
+    }
 }
 
 void add_undergrowth(Assembly& forest) {
@@ -216,7 +224,7 @@ void add_undergrowth(Assembly& forest) {
     }
     for (int i = 0; i < 3; ++i) {
         const Index meadow = forest.add_node("meadow", kNone, {}, tufts[std::size_t(i)]);
-        for (int k = 0; k < 34; ++k) {
+        for (int k = 0; k < 30; ++k) {
             const double z = -0.7 - 3.6 * std::pow(random.uniform(), 1.2);
             const double x = random.around(0.0, 0.5 - 0.75 * z);
             const double yaw = random.angle();
@@ -236,7 +244,7 @@ void add_undergrowth(Assembly& forest) {
         }
     }
     const Index carpet = forest.add_node("clover", kNone, {}, forest.add_mesh("clover", clover.take(material)));
-    for (int k = 0; k < 44; ++k) {
+    for (int k = 0; k < 36; ++k) {
         const double z = 0.2 - 0.75 * random.uniform();
         const double x = random.around(0.0, 0.2 + 0.62 * (0.62 - z));
         const double yaw = random.angle();
@@ -254,7 +262,7 @@ void add_undergrowth(Assembly& forest) {
     add_fern(fern, random, 7, 1.0, kFern);
     const Index fern_mesh = forest.add_mesh("fern", fern.take(material));
     const glm::dvec3 ferns[] = {
-        {-0.40, -0.22, 0.20}, {0.50, -0.42, 0.22}, {0.30, -0.95, 0.24}, {-0.85, -0.9, 0.28}, {-0.28, -1.5, 0.3}};
+        {-0.40, -0.22, 0.20}, {0.50, -0.42, 0.22}, {0.30, -0.95, 0.24}, {-0.85, -0.9, 0.28}, {-0.215, 0.19, 0.15}};
     for (const glm::dvec3& f : ferns) {
         const Index node = forest.add_node("fern", kNone, placed(on_ground(f.x, f.y), random.angle(), f.z), fern_mesh);
         forest.sway(node, {1.0, 0.0, 0.3}, degrees(2.5), random.range(1.5, 2.1), random.angle());
@@ -328,7 +336,7 @@ void add_mushrooms(Assembly& forest) {
 
     // Small ones that glow blue at the foot of the left trunk and light the moss around them.
     Material glowing = painted("glowing mushroom", 0.5);
-    glowing.emissive = {0.010f, 0.13f, 0.19f};
+    glowing.emissive = {0.006f, 0.075f, 0.11f};
     const Index glow = forest.add(glowing);
     MushroomStyle lamp;
     lamp.cap = {0.06, 0.30, 0.42};
@@ -349,9 +357,9 @@ void add_mushrooms(Assembly& forest) {
         forest.add_node("glowing mushroom", kNone,
                         placed(on_ground(foot.x, foot.y), random.angle(), random.range(0.8, 1.5)), mesh);
     forest.add_point_light("blue glow left", kNone, on_ground(-0.385, -0.05) + glm::dvec3(0.0, 0.06, 0.04),
-                           {0.2f, 0.75f, 1.0f}, 0.008);
+                           {0.2f, 0.75f, 1.0f}, 0.005);
     forest.add_point_light("blue glow middle", kNone, on_ground(0.06, -0.01) + glm::dvec3(0.0, 0.05, 0.03),
-                           {0.2f, 0.75f, 1.0f}, 0.004);
+                           {0.2f, 0.75f, 1.0f}, 0.0025);
 }
 
 /// Fireflies hover in the wood behind: bright points that the lens turns into disks.

@@ -239,7 +239,7 @@ void add_dusk(Assembly& scene) {
     m.surface(
         12, 20, [](double u, double v) { return glm::dvec3(-9.0 + 18.0 * u, -4.5 + 9.0 * v, -8.0); },
         [](double u, double v, glm::dvec3) {
-            const glm::dvec3 street{0.020, 0.016, 0.024}, glow{0.20, 0.065, 0.045}, violet{0.045, 0.028, 0.085},
+            const glm::dvec3 street{0.020, 0.016, 0.024}, glow{0.23, 0.060, 0.062}, violet{0.045, 0.028, 0.085},
                 night{0.006, 0.012, 0.034};
             const glm::dvec3 above = glm::mix(violet, night, glm::smoothstep(0.52, 0.78, v));
             const glm::dvec3 horizon = glm::mix(glow * (0.55 + 0.6 * u), above, glm::smoothstep(0.42, 0.60, v));
@@ -253,7 +253,7 @@ void add_camera_and_light(Assembly& scene) {
     const auto eye = [](double t) { return glm::dvec3(0.012 * (t - 1.0), 0.01, 0.5); };
     scene.animate_translation(camera, 7, eye);
     scene.animate_rotation(camera, 7, [=](double t) { return looking(eye(t), {0.0, 0.012, 0.0}); });
-    scene.add_sun("key", {-0.8, 0.55, 0.75}, {1.0f, 0.80f, 0.60f}, 3.6);
+    scene.add_sun("key", {-0.8, 0.55, 0.75}, {1.0f, 0.80f, 0.60f}, 2.9);
     scene.add_sun("rim", {0.9, 0.25, -0.55}, {0.25f, 0.55f, 1.0f}, 5.0);
     scene.add_sun("lower rim", {-0.7, -0.35, -0.6}, {1.0f, 0.25f, 0.35f}, 2.2);
     scene.add_sun("fill", {0.4, 0.1, 1.0}, {0.5f, 0.6f, 1.0f}, 0.45);

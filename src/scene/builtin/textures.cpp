@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <utility>
@@ -13,26 +12,29 @@
 namespace pentaprism::builtin {
 namespace {
 
-/// Fills a picture from a function of the texel centre (u right, v down, both 0 to 1): linear colour and alpha.
-Image paint(std::string name, int width, int height, const std::function<glm::dvec4(double u, double v)>& texel) {
-    Image image{std::move(name), width, height, {}};
-    image.texels.reserve(std::size_t(4) * std::size_t(width) * std::size_t(height));
-    for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-            const glm::dvec4 c = glm::clamp(texel((x + 0.5) / width, (y + 0.5) / height), 0.0, 1.0);
-            for (int k = 0; k < 3; ++k) image.texels.push_back(srgb_code(c[k]));
-            image.texels.push_back(static_cast<std::uint8_t>(std::lround(255.0 * c.w)));
-        }
-    }
-    return image;
-}
-
 /// 1 on a line of half width w, falling to 0 at twice that.
 double line(double distance, double w) {
     return 1.0 - glm::smoothstep(w, 2.0 * w, std::abs(distance));
 }
 
 }  // namespace
+
+Image paint(std::string name, int width, int height, int taps, const Texel& texel) {
+    Image image{std::move(name), width, height, {}};
+    image.texels.reserve(std::size_t(4) * std::size_t(width) * std::size_t(height));
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            glm::dvec4 sum{0.0};
+            for (int j = 0; j < taps; ++j)
+                for (int i = 0; i < taps; ++i)
+                    sum += glm::clamp(texel((x + (i + 0.5) / taps) / width, (y + (j + 0.5) / taps) / height), 0.0, 1.0);
+            sum /= double(taps * taps);
+            for (int k = 0; k < 3; ++k) image.texels.push_back(srgb_code(sum[k]));
+            image.texels.push_back(static_cast<std::uint8_t>(std::lround(255.0 * sum.w)));
+        }
+    }
+    return image;
+}
 
 std::uint8_t srgb_code(double linear) {
     const double c = std::clamp(linear, 0.0, 1.0);
@@ -41,21 +43,21 @@ std::uint8_t srgb_code(double linear) {
 }
 
 Image checker_texture(std::string name, int size, int squares, glm::dvec3 dark, glm::dvec3 light) {
-    return paint(std::move(name), size, size, [&](double u, double v) {
+    return paint(std::move(name), size, size, 1, [&](double u, double v) {
         const bool odd = ((static_cast<int>(u * squares) + static_cast<int>(v * squares)) & 1) != 0;
         return glm::dvec4(odd ? light : dark, 1.0);
     });
 }
 
 Image stripe_texture(std::string name, int size, int stripes, glm::dvec3 dark, glm::dvec3 light) {
-    return paint(std::move(name), size, size, [&](double u, double v) {
+    return paint(std::move(name), size, size, 3, [&](double u, double v) {
         const bool odd = (static_cast<int>((u + v) * 2 * stripes) & 1) != 0;
         return glm::dvec4(odd ? light : dark, 1.0);
     });
 }
 
 Image target_texture(std::string name, int size, int rings, glm::dvec3 dark, glm::dvec3 light) {
-    return paint(std::move(name), size, size, [&](double u, double v) {
+    return paint(std::move(name), size, size, 3, [&](double u, double v) {
         const double r = 2.1 * glm::length(glm::dvec2(u - 0.5, v - 0.5));
         const bool odd = r < 1.0 && (static_cast<int>(r * 2 * rings) & 1) == 0;
         return glm::dvec4(odd ? light : dark, 1.0);
@@ -63,7 +65,7 @@ Image target_texture(std::string name, int size, int rings, glm::dvec3 dark, glm
 }
 
 Image soft_spot_texture(std::string name, glm::dvec3 color, double alpha) {
-    return paint(std::move(name), 64, 64, [&](double u, double v) {
+    return paint(std::move(name), 64, 64, 1, [&](double u, double v) {
         const double x = 2.0 * u - 1.0, y = 2.0 * v - 1.0;
         const double fall =
             (1.0 - glm::smoothstep(0.45, 1.0, std::abs(x))) * (1.0 - glm::smoothstep(0.3, 1.0, std::abs(y)));
@@ -72,7 +74,7 @@ Image soft_spot_texture(std::string name, glm::dvec3 color, double alpha) {
 }
 
 Image bark_texture() {
-    return paint("bark", 128, 256, [](double u, double v) {
+    return paint("bark", 128, 256, 1, [](double u, double v) {
         // Noise on a cylinder, cut at a meridian: mixing the two ends makes it repeat in u and in v.
         const auto furrows = [](double x, double y) { return fractal_noise({14.0 * x, 5.0 * y}, 4); };
         const double a = glm::mix(furrows(u, v), furrows(u - 1.0, v), u);
@@ -102,7 +104,7 @@ Image litter_texture() {
                     fleck_shade[std::size_t(texel)] = shade * (0.9 + 0.2 * std::abs(t));
             }
     }
-    return paint("litter", kSize, kSize, [&](double u, double v) {
+    return paint("litter", kSize, kSize, 1, [&](double u, double v) {
         const auto crumbs = [](double x, double y) { return fractal_noise({24.0 * x, 24.0 * y}, 4); };
         const double a = glm::mix(crumbs(u, v), crumbs(u - 1.0, v), u);
         const double b = glm::mix(crumbs(u, v - 1.0), crumbs(u - 1.0, v - 1.0), u);
@@ -114,7 +116,7 @@ Image litter_texture() {
 }
 
 Image leaf_texture() {
-    return paint("leaf", 128, 128, [](double u, double v) {
+    return paint("leaf", 128, 128, 1, [](double u, double v) {
         const double x = std::abs(2.0 * u - 1.0);
         const double along = v - 0.35 * x;  // side veins rise towards the tip
         const double side = std::abs(along * 9.0 - std::round(along * 9.0)) / 9.0;
@@ -136,7 +138,7 @@ Image wing_texture(std::string name, glm::dvec3 membrane, glm::dvec3 vein, doubl
             sites.emplace_back(x, y);
         }
     const auto site = [&](int i, int j) { return sites[std::size_t((j + 1) * (kAcross + 2) + i + 1)]; };
-    return paint(std::move(name), 128, 512, [&](double u, double v) {
+    return paint(std::move(name), 128, 512, 1, [&](double u, double v) {
         const double warped = std::pow(u, 0.75);
         const glm::dvec2 scale{1.0, 2.6}, q{warped, v};
         double nearest = 1e9, second = 1e9;

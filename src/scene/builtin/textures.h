@@ -1,9 +1,16 @@
 #pragma once
 // Procedural textures, 8-bit sRGB with alpha, at most 512 texels wide.
 
+#include <functional>
 #include <pentaprism/scene.h>
 
 namespace pentaprism::builtin {
+
+/// Linear colour and alpha of the point (u right, v down, both 0 to 1).
+using Texel = std::function<glm::dvec4(double u, double v)>;
+
+/// A picture of the function, each texel the mean of `taps` x `taps` points.
+Image paint(std::string name, int width, int height, int taps, const Texel& texel);
 
 /// Two linear colours in `squares` x `squares` fields with hard edges.
 Image checker_texture(std::string name, int size, int squares, glm::dvec3 dark, glm::dvec3 light);
