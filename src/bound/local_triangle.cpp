@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "bound/screen_bounds.h"
+#include "frame/opacity.h"
 
 namespace pentaprism {
 
@@ -47,7 +48,7 @@ LocalTriangle localize(const Frame& frame, std::uint32_t triangle, int segment, 
     local.z_far = static_cast<float>(frame.view.depth_far);
     local.triangle = triangle;
     local.two_sided = part.two_sided;
-    local.alpha_tested = part.alpha_mode != AlphaMode::kOpaque;
+    local.alpha_tested = opacity_class(frame, triangle) != OpacityClass::kSolid;
     local.orthographic = !frame.view.perspective;
     if (local.behind) {
         const ScreenBox box = screen_bounds(m, frame.view.w_near(), frame.view.lens.ratio);

@@ -67,10 +67,19 @@ float texture_alpha(const Frame& frame, const Primitive& primitive, const Textur
 
 }  // namespace
 
+OpacityClass opacity_class(const Frame& frame, std::uint32_t triangle) {
+    const Part& part = frame.parts[frame.part_of[triangle]];
+    if (part.alpha_mode == AlphaMode::kOpaque || part.material == kNone) return OpacityClass::kSolid;
+    if (!frame.textures) return OpacityClass::kMixed;
+    const OpacityClass* classes = frame.textures->opacity_classes(part.placement.mesh, part.placement.primitive);
+    return classes ? classes[triangle - part.first_triangle] : OpacityClass::kMixed;
+}
+
 bool is_opaque_at(const Frame& frame, std::uint32_t triangle, const float barycentrics[3], int px, int py,
                   int sample_index, int spp) {
+    const OpacityClass known = opacity_class(frame, triangle);
+    if (known != OpacityClass::kMixed) return known == OpacityClass::kSolid;
     const Part& part = frame.parts[frame.part_of[triangle]];
-    if (part.alpha_mode == AlphaMode::kOpaque || part.material == kNone) return true;
     const Material& material = frame.scene->materials[part.material];
     const Primitive& primitive = frame.scene->meshes[part.placement.mesh].primitives[part.placement.primitive];
     const std::array<std::uint32_t, 3> vertices = frame.vertices(triangle);

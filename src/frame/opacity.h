@@ -15,4 +15,7 @@ namespace pentaprism {
 bool is_opaque_at(const Frame& frame, std::uint32_t triangle, const float barycentrics[3], int px, int py,
                   int sample_index, int spp);
 
+/// kSolid promises that is_opaque_at() is true at every point of the triangle, kClear that it is false.
+OpacityClass opacity_class(const Frame& frame, std::uint32_t triangle);
+
 }  // namespace pentaprism

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/float4.h"
 #include "base/parallel.h"
 
 namespace pentaprism {
@@ -172,8 +173,14 @@ glm::vec4 Pyramid::bilinear(const Level& level, const TextureRef& ref, glm::vec2
     const Between x = between(ref.wrap_s, uv.x, level.width), y = between(ref.wrap_t, uv.y, level.height);
     const std::uint8_t* upper = &level.texels[4 * (static_cast<std::size_t>(y.first) * level.width)];
     const std::uint8_t* lower = &level.texels[4 * (static_cast<std::size_t>(y.second) * level.width)];
-    return mix(mix(decode(upper + 4 * x.first), decode(upper + 4 * x.second), x.share),
-               mix(decode(lower + 4 * x.first), decode(lower + 4 * x.second), x.share), y.share);
+    const auto lanes = [this](const std::uint8_t* t) {
+        return Float4{color_of_code_[t[0]], color_of_code_[t[1]], color_of_code_[t[2]], t[3] * (1.0f / 255.0f)};
+    };
+    const Float4 a = lanes(upper + 4 * x.first), b = lanes(upper + 4 * x.second);
+    const Float4 c = lanes(lower + 4 * x.first), d = lanes(lower + 4 * x.second);
+    const Float4 above = a + (b - a) * splat(x.share), below = c + (d - c) * splat(x.share);
+    const Float4 mixed = above + (below - above) * splat(y.share);
+    return {mixed[0], mixed[1], mixed[2], mixed[3]};
 }
 
 glm::vec4 Pyramid::nearest(const Level& level, const TextureRef& ref, glm::vec2 uv) const {
@@ -226,6 +233,20 @@ Textures::Textures(const Scene& scene) {
         if (as_color[i]) colors_[i] = std::make_unique<Pyramid>(scene.images[i], Encoding::kSrgb, cut_out[i] != 0);
         if (as_data[i]) data_[i] = std::make_unique<Pyramid>(scene.images[i], Encoding::kLinear, false);
     });
+
+    std::vector<std::unique_ptr<const OpacityRange>> ranges(images);
+    parallel_for(images, [&](std::size_t i) {
+        if (cut_out[i]) ranges[i] = std::make_unique<OpacityRange>(*colors_[i]);
+    });
+    opacity_classes_.resize(scene.meshes.size());
+    parallel_for(scene.meshes.size(), [&](std::size_t i) {
+        for (const Primitive& primitive : scene.meshes[i].primitives) {
+            const Index material = primitive.material;
+            const Index image = material == kNone ? kNone : scene.materials[material].base_color_texture.image;
+            const bool known = image >= 0 && static_cast<std::size_t>(image) < images;
+            opacity_classes_[i].push_back(classify_opacity(scene, known ? ranges[image].get() : nullptr, primitive));
+        }
+    });
 }
 
 std::shared_ptr<const Textures> make_textures(const Scene& scene) {
@@ -238,11 +259,6 @@ glm::vec4 uv_matrix(const TextureRef& ref) {
     if (ref.rotation == 0.0f) return {ref.scale.x, 0.0f, 0.0f, ref.scale.y};
     const float c = std::cos(ref.rotation), s = std::sin(ref.rotation);
     return {c * ref.scale.x, -s * ref.scale.x, s * ref.scale.y, c * ref.scale.y};
-}
-
-glm::vec2 transform_uv(const TextureRef& ref, glm::vec2 uv) {
-    const glm::vec4 m = uv_matrix(ref);
-    return {m.x * uv.x + m.z * uv.y + ref.offset.x, m.y * uv.x + m.w * uv.y + ref.offset.y};
 }
 
 }  // namespace pentaprism

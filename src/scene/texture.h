@@ -4,13 +4,14 @@
 // Levels are averaged in linear light (never encoded bytes) with a box whose weights are exact for odd sizes, and
 // stored as 8 bits again: half the memory of half floats, and faster where memory is what a look-up waits for.
 
-#include <pentaprism/scene.h>
-
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec4.hpp>
 #include <memory>
+#include <pentaprism/scene.h>
 #include <vector>
+
+#include "scene/opacity_class.h"
 
 namespace pentaprism {
 
@@ -36,6 +37,11 @@ class Pyramid {
 
     /// Opacity alone, bilinear in level 0 whatever `ref.mipmapped` says: for alpha masks.
     float alpha(const TextureRef& ref, glm::vec2 uv) const;
+
+    /// The same of one texel of level 0, as stored.
+    std::uint8_t opacity_code(int x, int y) const {
+        return opacity_.empty() ? levels_[0].texels[3] : opacity_[static_cast<std::size_t>(y) * width() + x];
+    }
 
     /// One decoded texel, for tests; x and y inside the level.
     glm::vec4 texel(int level, int x, int y) const;
@@ -65,12 +71,20 @@ class Textures {
     const Pyramid* color(const TextureRef& ref) const { return find(colors_, ref.image); }
     const Pyramid* data(const TextureRef& ref) const { return find(data_, ref.image); }
 
+    /// Of each triangle of a primitive whose material is a mask or blended (scene/opacity_class.h); null for other
+    /// ones.
+    const OpacityClass* opacity_classes(Index mesh, Index primitive) const {
+        const std::vector<OpacityClass>& classes = opacity_classes_[mesh][primitive];
+        return classes.empty() ? nullptr : classes.data();
+    }
+
   private:
     using Table = std::vector<std::unique_ptr<const Pyramid>>;  // by index of the image
     static const Pyramid* find(const Table& table, Index image) {
         return image >= 0 && static_cast<std::size_t>(image) < table.size() ? table[image].get() : nullptr;
     }
     Table colors_, data_;
+    std::vector<std::vector<std::vector<OpacityClass>>> opacity_classes_;  // [mesh][primitive][triangle]
 };
 
 /// Built once for a scene and handed to each of its frames.
@@ -78,6 +92,10 @@ std::shared_ptr<const Textures> make_textures(const Scene& scene);
 
 /// The linear part of a texture's transform, and the whole: uv' = linear * uv + offset. Column-major.
 glm::vec4 uv_matrix(const TextureRef& ref);
-glm::vec2 transform_uv(const TextureRef& ref, glm::vec2 uv);
+inline glm::vec2 transform_uv(const TextureRef& ref, glm::vec2 uv) {
+    if (ref.rotation == 0.0f) return ref.scale * uv + ref.offset;
+    const glm::vec4 m = uv_matrix(ref);
+    return {m.x * uv.x + m.z * uv.y + ref.offset.x, m.y * uv.x + m.w * uv.y + ref.offset.y};
+}
 
 }  // namespace pentaprism
