@@ -12,7 +12,7 @@ bool has(Isa isa) {
 #ifdef PENTAPRISM_SCALAR_ONLY
     return isa == Isa::kScalar;
 #else
-    const auto targets = hwy::SupportedTargets();
+    static const auto targets = hwy::SupportedTargets();  // asks the processor, which is slow on virtual machines
     switch (isa) {
         case Isa::kScalar: return true;
         case Isa::kNeon: return (targets & HWY_NEON) != 0;

@@ -1,16 +1,15 @@
 // `pentaprism info SCENE`: what is in a scene.
 
 #include <fmt/format.h>
-#include <pentaprism/metadata.h>
-#include <pentaprism/scene.h>
-
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <pentaprism/metadata.h>
+#include <pentaprism/scene.h>
 
-#include "commands.h"
-#include "messages.h"
-#include "options.h"
+#include "cli/commands.h"
+#include "cli/messages.h"
+#include "cli/options.h"
 
 namespace pentaprism::cli {
 namespace {

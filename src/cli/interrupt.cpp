@@ -1,8 +1,7 @@
-#include "interrupt.h"
-
-#include <pentaprism/error.h>
+#include "cli/interrupt.h"
 
 #include <csignal>
+#include <pentaprism/error.h>
 
 namespace pentaprism::cli {
 namespace {

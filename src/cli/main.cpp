@@ -1,18 +1,17 @@
 // The program: parses the command line, runs one command, and turns every failure into one line and an exit code.
 
-#include <fmt/format.h>
-#include <pentaprism/error.h>
-
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <exception>
+#include <fmt/format.h>
 #include <new>
+#include <pentaprism/error.h>
 #include <sstream>
 
-#include "commands.h"
-#include "interrupt.h"
-#include "messages.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/messages.h"
 
 namespace pentaprism::cli {
 namespace {

@@ -1,10 +1,9 @@
-#include "messages.h"
-
-#include <fmt/format.h>
-#include <pentaprism/error.h>
+#include "cli/messages.h"
 
 #include <cerrno>
 #include <cstdio>
+#include <fmt/format.h>
+#include <pentaprism/error.h>
 #include <system_error>
 
 namespace pentaprism::cli {

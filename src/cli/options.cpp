@@ -1,15 +1,14 @@
-#include "options.h"
-
-#include <fmt/format.h>
-#include <pentaprism/render.h>
+#include "cli/options.h"
 
 #include <algorithm>
 #include <cstdlib>
+#include <fmt/format.h>
 #include <limits>
 #include <memory>
+#include <pentaprism/render.h>
 #include <utility>
 
-#include "values.h"
+#include "cli/values.h"
 
 namespace pentaprism::cli {
 namespace {

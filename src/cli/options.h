@@ -1,10 +1,9 @@
 #pragma once
 // The options that decide how a frame looks: `render` and `verify` share them.
 
-#include <pentaprism/settings.h>
-
 #include <CLI/App.hpp>
 #include <functional>
+#include <pentaprism/settings.h>
 #include <string>
 #include <vector>
 

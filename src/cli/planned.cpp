@@ -1,7 +1,7 @@
 // Commands of the contract that are refused by name until they are built.
 
-#include "commands.h"
-#include "options.h"
+#include "cli/commands.h"
+#include "cli/options.h"
 
 namespace pentaprism::cli {
 

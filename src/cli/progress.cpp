@@ -1,16 +1,15 @@
-#include "progress.h"
-
-#include <fmt/format.h>
-#include <unistd.h>
+#include "cli/progress.h"
 
 #include <algorithm>
 #include <cstdio>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <unistd.h>
 
-#include "interrupt.h"
-#include "messages.h"
-#include "options.h"
-#include "values.h"
+#include "cli/interrupt.h"
+#include "cli/messages.h"
+#include "cli/options.h"
+#include "cli/values.h"
 
 namespace pentaprism::cli {
 namespace {

@@ -1,11 +1,10 @@
 #pragma once
 // How far the work is, on stderr: over all frames, with the time left.
 
-#include <pentaprism/render.h>
-
 #include <CLI/App.hpp>
 #include <chrono>
 #include <cstdint>
+#include <pentaprism/render.h>
 #include <string>
 
 namespace pentaprism::cli {

@@ -12,11 +12,11 @@
 #include <pentaprism/render.h>
 #include <unistd.h>
 
-#include "commands.h"
-#include "interrupt.h"
-#include "messages.h"
-#include "options.h"
-#include "progress.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/messages.h"
+#include "cli/options.h"
+#include "cli/progress.h"
 
 namespace pentaprism::cli {
 namespace {

@@ -1,15 +1,14 @@
 // `pentaprism scene NAME -o FILE.glb` and `pentaprism scene --list`: the built-in scenes.
 
 #include <fmt/format.h>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <pentaprism/error.h>
 #include <pentaprism/scene.h>
 
-#include <memory>
-#include <nlohmann/json.hpp>
-
-#include "commands.h"
-#include "messages.h"
-#include "options.h"
+#include "cli/commands.h"
+#include "cli/messages.h"
+#include "cli/options.h"
 
 namespace pentaprism::cli {
 namespace {

@@ -1,10 +1,9 @@
 #pragma once
 // Texts of the command line to values. Each throws Error(kUsage) that names the option, the text and what is wanted.
 
+#include <cstdint>
 #include <fmt/format.h>
 #include <pentaprism/error.h>
-
-#include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>

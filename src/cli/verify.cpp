@@ -1,19 +1,18 @@
 // `pentaprism verify SCENE`: every sample of a frame against an independent reference.
 
 #include <fmt/format.h>
+#include <memory>
+#include <nlohmann/json.hpp>
 #include <pentaprism/error.h>
 #include <pentaprism/frames.h>
 #include <pentaprism/verify.h>
 
-#include <memory>
-#include <nlohmann/json.hpp>
-
-#include "commands.h"
-#include "interrupt.h"
-#include "messages.h"
-#include "options.h"
-#include "progress.h"
-#include "values.h"
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/messages.h"
+#include "cli/options.h"
+#include "cli/progress.h"
+#include "cli/values.h"
 
 namespace pentaprism::cli {
 namespace {

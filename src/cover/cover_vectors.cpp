@@ -1,6 +1,7 @@
 // The fast path of the coverage stage: sixteen samples at a time, the same decisions as cover/exact.cpp bit for bit.
 //
-// For each triangle of the tile, in submission order:
+// The tile's triangles are walked roughly front to back, so that what is hidden is refused early; equal depths go to the lower
+// triangle whatever the order. For each triangle:
 //   1. interval bounds of the triangle for each stratum of (u, v, t), strata in lanes (docs/develop/algorithms.md 4.11), give
 //      the 4x4-pixel blocks in which the stratum's samples can hit; triangles that reach the camera plane take the improved
 //      dual-space test on each block instead;
@@ -38,19 +39,29 @@ using I = hn::RebindToSigned<F>;
 using U = hn::RebindToUnsigned<F>;
 constexpr float kUnitRoundoff = 1.0f / 16777216.0f;
 
+// One vector of samples: a block of the cell and a slot of it.
+struct Job {
+    std::uint16_t block, slot;
+};
+
 // The tile's state that lives longer than a triangle.
 struct TileState {
+    TileState(const TileWork& w, Hits& h, CoverCounts& c)
+        : work(w), hits(h), counts(c), centre(cell_centre(w.frame.view, w.tile.cell_x(), w.tile.cell_y())) {}
+
     const TileWork& work;
     Hits& hits;
     CoverCounts& counts;
     CellCentre centre;
     std::span<const SampleTable::Stratum> strata;
     std::span<const Domain> domains;
-    std::uint64_t tile_blocks;                       // blocks of the cell that belong to the tile
+    std::uint64_t tile_blocks = 0;                       // blocks of the cell that belong to the tile
     std::vector<const SampleVector*> block_samples;  // [block]
     std::vector<float> farthest;                     // [block][slot]: largest depth stored so far
-    std::vector<std::uint32_t> jobs, survivors;      // block * slots + slot
+    std::vector<Job> jobs, survivors;
+    float tile_farthest = INFINITY;                  // no smaller than any of `farthest`
     // Domains of the strata, structure of arrays, padded to whole vectors with empty ones.
+    float block_x[kBlocksPerCell], block_y[kBlocksPerCell];  // top left corner of each block, from the cell's middle, y up
     HWY_ALIGN float u0[64], u1[64], v0[64], v1[64], t0[64], t1[64];
     int stratum_count = 0;
 };
@@ -58,30 +69,32 @@ struct TileState {
 // Where the three vertices are seen from sixteen samples (docs/develop/algorithms.md 1.5).
 struct Deltas {
     Vec x[3], y[3], w[3], z[3];
-    Mask in_segment;
+    Vec tau;
 };
 
-template <bool kMotion, bool kDefocus>
+// What of the general test a triangle needs. Adding u*0 or t*0 is exact: the shorter kernels give the same bits.
+template <bool kMotionT, bool kDefocusT, bool kTwoSidedT>
+struct Kind {
+    static constexpr bool kMotion = kMotionT, kDefocus = kDefocusT, kTwoSided = kTwoSidedT;
+};
+
+template <class K>
 HWY_INLINE Deltas deltas(F f, const LocalTriangle& T, const SampleVector& s, int lane, float block_x, float block_y) {
     Deltas D;
     const Vec hx = hn::Add(hn::Load(f, s.x + lane), hn::Set(f, block_x));
     const Vec hy = hn::Add(hn::Load(f, s.y + lane), hn::Set(f, block_y));
     Vec tau = hn::Zero(f);
-    if constexpr (kMotion) {
-        tau = hn::MulAdd(hn::Load(f, s.t + lane), hn::Set(f, T.segments), hn::Set(f, -T.segment));
-        D.in_segment = hn::And(hn::Ge(tau, hn::Zero(f)), hn::Lt(tau, hn::Set(f, 1.0f)));
-    } else {
-        D.in_segment = hn::FirstN(f, kLanes);
-    }
+    if constexpr (K::kMotion) tau = hn::MulAdd(hn::Load(f, s.t + lane), hn::Set(f, T.segments), hn::Set(f, -T.segment));
+    D.tau = tau;
     for (int i = 0; i < 3; ++i) {
         Vec x = hn::Set(f, T.qx[i]), y = hn::Set(f, T.qy[i]), w = hn::Set(f, T.qw[i]), c = hn::Set(f, T.qc[i]);
-        if constexpr (kMotion) {
+        if constexpr (K::kMotion) {
             x = hn::MulAdd(tau, hn::Set(f, T.dx[i]), x);
             y = hn::MulAdd(tau, hn::Set(f, T.dy[i]), y);
             w = hn::MulAdd(tau, hn::Set(f, T.dw[i]), w);
-            if constexpr (kDefocus) c = hn::MulAdd(tau, hn::Set(f, T.dc[i]), c);
+            if constexpr (K::kDefocus) c = hn::MulAdd(tau, hn::Set(f, T.dc[i]), c);
         }
-        if constexpr (kDefocus) {
+        if constexpr (K::kDefocus) {
             x = hn::MulAdd(hn::Load(f, s.u + lane), c, x);
             y = hn::MulAdd(hn::Load(f, s.v + lane), c, y);
         }
@@ -100,39 +113,49 @@ struct Edges {
 };
 HWY_INLINE Edges edges(const Deltas& D) { return {{edge(D, 1, 2), edge(D, 2, 0), edge(D, 0, 1)}}; }
 
-// Lanes that are inside for certain, and lanes with a sample exactly on an edge, which the scalar test decides.
-struct Inside {
-    Mask certain, tied;
-};
-HWY_INLINE Inside inside(F f, const LocalTriangle& T, const Edges& E) {
+// Samples of other segments of the same path belong to those.
+template <class K>
+HWY_INLINE Mask in_segment(F f, const Deltas& D, Mask mask) {
+    if constexpr (!K::kMotion) return mask;
+    return hn::And(mask, hn::And(hn::Ge(D.tau, hn::Zero(f)), hn::Lt(D.tau, hn::Set(f, 1.0f))));
+}
+
+// Lanes that are not outside any edge: all that can be hit, and those with a sample exactly on an edge.
+template <class K>
+HWY_INLINE Mask not_outside(F f, const Edges& E) {
     const Vec zero = hn::Zero(f);
-    const Vec lowest = hn::Min(hn::Min(E.e[0], E.e[1]), E.e[2]), highest = hn::Max(hn::Max(E.e[0], E.e[1]), E.e[2]);
-    const Mask two_sided = T.two_sided ? hn::FirstN(f, kLanes) : hn::FirstN(f, 0);
-    const Mask back = hn::And(hn::Lt(highest, zero), two_sided), back_or_tied = hn::And(hn::Le(highest, zero), two_sided);
-    const Mask certain = hn::Or(hn::Gt(lowest, zero), back);
-    return {certain, hn::AndNot(certain, hn::Or(hn::Ge(lowest, zero), back_or_tied))};
+    const Mask front = hn::Ge(hn::Min(hn::Min(E.e[0], E.e[1]), E.e[2]), zero);
+    if constexpr (!K::kTwoSided) return front;
+    return hn::Or(front, hn::Le(hn::Max(hn::Max(E.e[0], E.e[1]), E.e[2]), zero));
+}
+
+// Of them the lanes that are inside for certain; the scalar test decides the others.
+template <class K>
+HWY_INLINE Mask strictly_inside(F f, const Edges& E) {
+    const Vec zero = hn::Zero(f);
+    const Mask front = hn::Gt(hn::Min(hn::Min(E.e[0], E.e[1]), E.e[2]), zero);
+    if constexpr (!K::kTwoSided) return front;
+    return hn::Or(front, hn::Lt(hn::Max(hn::Max(E.e[0], E.e[1]), E.e[2]), zero));
 }
 
 HWY_INLINE float block_x(int block) { return static_cast<float>(block % kCellBlocks * kBlockSize - kCellSize / 2); }
 HWY_INLINE float block_y(int block) { return static_cast<float>(kCellSize / 2 - block / kCellBlocks * kBlockSize); }
 
 // Pass 1: which vectors of the work list have a sample inside all edges.
-template <bool kMotion, bool kDefocus>
+template <class K>
 std::size_t find_survivors(TileState& state, const LocalTriangle& T, std::size_t job_count) {
     const F f;
-    const int slots = state.work.samples.slots();
+    Job* HWY_RESTRICT survivors = state.survivors.data();
     std::size_t count = 0;
     for (std::size_t j = 0; j < job_count; ++j) {
-        const std::uint32_t job = state.jobs[j];
-        const int block = static_cast<int>(job) / slots, slot = static_cast<int>(job) % slots;
-        const SampleVector& s = state.block_samples[block][slot];
+        const Job job = state.jobs[j];
+        const SampleVector& s = state.block_samples[job.block][job.slot];
         bool any = false;
         for (int lane = 0; lane < kLanes; lane += static_cast<int>(hn::Lanes(f))) {
-            const Deltas D = deltas<kMotion, kDefocus>(f, T, s, lane, block_x(block), block_y(block));
-            const Inside in = inside(f, T, edges(D));
-            any |= !hn::AllFalse(f, hn::And(hn::Or(in.certain, in.tied), D.in_segment));
+            const Deltas D = deltas<K>(f, T, s, lane, state.block_x[job.block], state.block_y[job.block]);
+            any |= !hn::AllFalse(f, in_segment<K>(f, D, not_outside<K>(f, edges(D))));
         }
-        state.survivors[count] = job;
+        survivors[count] = job;
         count += any;
     }
     return count;
@@ -184,56 +207,63 @@ HWY_NOINLINE Mask decide_opacity(F f, const TileState& state, const LocalTriangl
     return hn::RebindMask(f, hn::Lt(hn::Load(i, ask), hn::Zero(i)));
 }
 
+// Lanes within the screen bounds of a triangle that reaches the camera plane.
+HWY_INLINE Mask in_box(F f, const TileState& state, const LocalTriangle& T, const SampleVector& s, int lane, int block) {
+    const Vec gx = hn::Add(hn::Set(f, state.centre.x), hn::Add(hn::Load(f, s.x + lane), hn::Set(f, state.block_x[block])));
+    const Vec gy = hn::Add(hn::Set(f, state.centre.y), hn::Add(hn::Load(f, s.y + lane), hn::Set(f, state.block_y[block])));
+    return hn::And(hn::And(hn::Ge(gx, hn::Set(f, T.box[0])), hn::Le(gx, hn::Set(f, T.box[1]))),
+                   hn::And(hn::Ge(gy, hn::Set(f, T.box[2])), hn::Le(gy, hn::Set(f, T.box[3]))));
+}
+
 // Pass 2: depth, opacity and writes of the vectors that hit.
-template <bool kMotion, bool kDefocus>
+template <class K>
 void write_hits(TileState& state, const LocalTriangle& T, std::size_t count) {
     const F f;
     const U u;
-    const int slots = state.work.samples.slots();
+    const std::size_t slots = static_cast<std::size_t>(state.work.samples.slots());
+    const Vec zero = hn::Zero(f);
+    std::int64_t covered = 0;
     for (std::size_t j = 0; j < count; ++j) {
-        const std::uint32_t job = state.survivors[j];
-        const int block = static_cast<int>(job) / slots, slot = static_cast<int>(job) % slots;
-        const SampleVector& s = state.block_samples[block][slot];
-        float* depths = &state.hits.depth[std::size_t{job} * kLanes];
-        std::uint32_t* triangles = &state.hits.triangle[std::size_t{job} * kLanes];
-        Vec farthest = hn::Zero(f);
+        const Job job = state.survivors[j];
+        const std::size_t vector = job.block * slots + job.slot;
+        const SampleVector& s = state.block_samples[job.block][job.slot];
+        float* depths = &state.hits.depth[vector * kLanes];
+        std::uint32_t* triangles = &state.hits.triangle[vector * kLanes];
+        Vec farthest = zero;
         for (int lane = 0; lane < kLanes; lane += static_cast<int>(hn::Lanes(f))) {
-            const Deltas D = deltas<kMotion, kDefocus>(f, T, s, lane, block_x(block), block_y(block));
+            const Deltas D = deltas<K>(f, T, s, lane, state.block_x[job.block], state.block_y[job.block]);
             const Edges E = edges(D);
-            const Inside in = inside(f, T, E);
-            Mask hit = hn::And(hn::And(in.certain, D.in_segment), hn::And(straddles_zero(f, D.x), straddles_zero(f, D.y)));
-            if (T.behind) {
-                const Vec gx = hn::Add(hn::Set(f, state.centre.x), hn::Add(hn::Load(f, s.x + lane), hn::Set(f, block_x(block))));
-                const Vec gy = hn::Add(hn::Set(f, state.centre.y), hn::Add(hn::Load(f, s.y + lane), hn::Set(f, block_y(block))));
-                hit = hn::And(hit, hn::And(hn::And(hn::Ge(gx, hn::Set(f, T.box[0])), hn::Le(gx, hn::Set(f, T.box[1]))),
-                                           hn::And(hn::Ge(gy, hn::Set(f, T.box[2])), hn::Le(gy, hn::Set(f, T.box[3])))));
-            }
+            const Mask candidates = in_segment<K>(f, D, not_outside<K>(f, E)), inside = strictly_inside<K>(f, E);
+            Mask hit = hn::And(hn::And(candidates, inside), hn::And(straddles_zero(f, D.x), straddles_zero(f, D.y)));
+            if (T.behind) hit = hn::And(hit, in_box(f, state, T, s, lane, job.block));
             const Vec sum = hn::Add(hn::Add(E.e[0], E.e[1]), E.e[2]);
             Vec depth = hn::Add(hn::Add(hn::Mul(E.e[0], D.z[0]), hn::Mul(E.e[1], D.z[1])), hn::Mul(E.e[2], D.z[2]));
             depth = hn::Div(depth, sum);
             depth = hn::Min(hn::Max(depth, hn::Min(hn::Min(D.z[0], D.z[1]), D.z[2])), hn::Max(hn::Max(D.z[0], D.z[1]), D.z[2]));
-            hit = hn::And(hit, hn::And(hn::Ne(sum, hn::Zero(f)),
-                                       hn::And(hn::Ge(depth, hn::Set(f, T.z_near)), hn::Le(depth, hn::Set(f, T.z_far)))));
-            const Mask tied = hn::And(in.tied, D.in_segment);
-            if (HWY_UNLIKELY(!hn::AllFalse(f, tied))) hit = hn::Or(hit, decide_ties(f, state, T, s, lane, block, tied, depth));
-            state.counts.covered += static_cast<std::int64_t>(hn::CountTrue(f, hit));
+            hit = hn::And(hit, hn::And(hn::Ne(sum, zero), hn::And(hn::Ge(depth, hn::Set(f, T.z_near)), hn::Le(depth, hn::Set(f, T.z_far)))));
+            const Mask tied = hn::AndNot(inside, candidates);
+            if (HWY_UNLIKELY(!hn::AllFalse(f, tied))) hit = hn::Or(hit, decide_ties(f, state, T, s, lane, job.block, tied, depth));
+            covered += static_cast<std::int64_t>(hn::CountTrue(f, hit));
             // Hits are ordinary vectors: not aligned.
             const Vec stored = hn::LoadU(f, depths + lane);
-            hit = hn::And(hit, hn::Lt(depth, stored));
-            if (T.alpha_tested && !hn::AllFalse(f, hit)) hit = decide_opacity(f, state, T, E, sum, lane, block, slot, hit);
+            const auto stored_triangle = hn::LoadU(u, triangles + lane), triangle = hn::Set(u, T.triangle);
+            const Mask lower = hn::RebindMask(f, hn::Lt(hn::BitCast(I(), triangle), hn::BitCast(I(), stored_triangle)));
+            hit = hn::And(hit, hn::Or(hn::Lt(depth, stored), hn::And(hn::Eq(depth, stored), lower)));
+            if (T.alpha_tested && !hn::AllFalse(f, hit)) hit = decide_opacity(f, state, T, E, sum, lane, job.block, job.slot, hit);
             const Vec nearest = hn::IfThenElse(hit, depth, stored);
             hn::StoreU(nearest, f, depths + lane);
-            hn::StoreU(hn::IfThenElse(hn::RebindMask(u, hit), hn::Set(u, T.triangle), hn::LoadU(u, triangles + lane)), u, triangles + lane);
+            hn::StoreU(hn::IfThenElse(hn::RebindMask(u, hit), triangle, stored_triangle), u, triangles + lane);
             farthest = hn::Max(farthest, nearest);
         }
-        state.farthest[job] = hn::GetLane(hn::MaxOfLanes(f, farthest));
+        state.farthest[vector] = hn::GetLane(hn::MaxOfLanes(f, farthest));
     }
+    state.counts.covered += covered;
 }
 
-template <bool kMotion, bool kDefocus>
+template <class K>
 void cover_jobs(TileState& state, const LocalTriangle& T, std::size_t jobs) {
-    const std::size_t survivors = find_survivors<kMotion, kDefocus>(state, T, jobs);
-    write_hits<kMotion, kDefocus>(state, T, survivors);
+    const std::size_t survivors = find_survivors<K>(state, T, jobs);
+    write_hits<K>(state, T, survivors);
 }
 
 // Bits of the columns and rows of blocks that the ranges touch; ranges in block units, already clamped to 0..7.
@@ -245,7 +275,7 @@ HWY_INLINE std::uint64_t block_mask(int column0, int column1, int row0, int row1
 
 // Step 1, triangle in front of the camera: for each stratum the blocks in which its samples can hit. Interval bounds: with
 // all w > 0, (x + u*c) / w over the stratum is extreme at an end of t and of u, at a vertex.
-void stratum_blocks(const TileState& state, const LocalTriangle& T, std::uint64_t* masks) {
+HWY_NOINLINE void stratum_blocks(const TileState& state, const LocalTriangle& T, std::uint64_t* masks) {
     const F f;
     const I i;
     float scale_x = 0, scale_y = 0, least_w = INFINITY;
@@ -316,16 +346,29 @@ std::uint64_t blocks_at_camera_plane(const LocalTriangle& T, const CullTest& tes
     return kept;
 }
 
-// Step 2: the (block, slot) pairs that may hit and are not hidden.
-std::size_t list_jobs(TileState& state, const std::uint64_t* masks, std::uint64_t blocks, float nearest) {
-    const std::uint32_t slots = static_cast<std::uint32_t>(state.work.samples.slots());
+// Step 2: the (block, slot) pairs that may hit and are not hidden. How many bits a mask has is unpredictable, so bits are
+// written out eight at a time, wanted or not; what is hidden is dropped in a second pass without branches.
+HWY_NOINLINE std::size_t list_jobs(TileState& state, const std::uint64_t* masks, std::uint64_t blocks, float nearest) {
+    const std::size_t slots = static_cast<std::size_t>(state.work.samples.slots());
+    Job* HWY_RESTRICT jobs = state.jobs.data();
+    std::size_t listed = 0;
+    for (const SampleTable::Stratum& s : state.strata) {
+        std::uint64_t m = masks[s.stratum] & s.blocks & blocks;
+        if (m == 0) continue;
+        const std::size_t end = listed + static_cast<std::size_t>(std::popcount(m));
+        do {
+            for (int k = 0; k < 8; ++k, m &= m - 1) jobs[listed + k] = {static_cast<std::uint16_t>(std::countr_zero(m)), s.slot};
+            listed += 8;
+        } while (m != 0);
+        listed = end;
+    }
+    const float* HWY_RESTRICT farthest = state.farthest.data();
     std::size_t count = 0;
-    for (const SampleTable::Stratum& s : state.strata)
-        for (std::uint64_t m = masks[s.stratum] & s.blocks & blocks; m != 0; m &= m - 1) {
-            const std::uint32_t job = static_cast<std::uint32_t>(std::countr_zero(m)) * slots + s.slot;
-            state.jobs[count] = job;
-            count += nearest < state.farthest[job];
-        }
+    for (std::size_t j = 0; j < listed; ++j) {
+        const Job job = jobs[j];
+        jobs[count] = job;
+        count += nearest <= farthest[job.block * slots + job.slot];
+    }
     return count;
 }
 
@@ -337,7 +380,7 @@ std::uint64_t blocks_of(const BinnedTriangle& binned, const Tile& tile) {
     return block_mask(x0 / kBlockSize, x1 / kBlockSize, y0 / kBlockSize, y1 / kBlockSize);
 }
 
-void cover_triangle(TileState& state, const BinnedTriangle& binned, const CullTest& camera_plane_test) {
+void cover_triangle(TileState& state, const BinnedTriangle& binned, float nearest, const CullTest& camera_plane_test) {
     const LocalTriangle T = localize(state.work.frame, binned.triangle, binned.segment, state.centre);
     std::uint64_t blocks = blocks_of(binned, state.work.tile) & state.tile_blocks;
     std::uint64_t masks[64];
@@ -347,8 +390,6 @@ void cover_triangle(TileState& state, const BinnedTriangle& binned, const CullTe
     } else {
         stratum_blocks(state, T, masks);
     }
-    // Rounding may put a hit a few ulps in front of the nearest vertex.
-    const float nearest = T.orthographic ? -INFINITY : binned.nearest_w * (1.0f - 16.0f * kUnitRoundoff);
     const std::size_t jobs = list_jobs(state, masks, blocks, nearest);
     state.counts.tested += static_cast<std::int64_t>(jobs) * kLanes;
     bool motion = T.segments > 1.0f, defocus = false;
@@ -356,22 +397,62 @@ void cover_triangle(TileState& state, const BinnedTriangle& binned, const CullTe
         motion = motion || T.dx[k] != 0 || T.dy[k] != 0 || T.dw[k] != 0 || T.dc[k] != 0 || T.dz[k] != 0;
         defocus = defocus || T.qc[k] != 0 || T.dc[k] != 0;
     }
-    // Adding u*0 or t*0 is exact: the shorter kernels give the same bits.
-    if (motion && defocus)
-        cover_jobs<true, true>(state, T, jobs);
-    else if (motion)
-        cover_jobs<true, false>(state, T, jobs);
-    else if (defocus)
-        cover_jobs<false, true>(state, T, jobs);
-    else
-        cover_jobs<false, false>(state, T, jobs);
+    using CoverJobs = void (*)(TileState&, const LocalTriangle&, std::size_t);
+    constexpr CoverJobs kKinds[2][2][2] = {
+        {{cover_jobs<Kind<false, false, false>>, cover_jobs<Kind<false, false, true>>},
+         {cover_jobs<Kind<false, true, false>>, cover_jobs<Kind<false, true, true>>}},
+        {{cover_jobs<Kind<true, false, false>>, cover_jobs<Kind<true, false, true>>},
+         {cover_jobs<Kind<true, true, false>>, cover_jobs<Kind<true, true, true>>}}};
+    kKinds[motion][defocus][T.two_sided](state, T, jobs);
+}
+
+// Farthest depth that any of the tile's samples still shows.
+void update_tile_farthest(TileState& state) {
+    float farthest = 0.0f;
+    for (std::uint64_t m = state.tile_blocks; m != 0; m &= m - 1) {
+        const std::size_t slots = static_cast<std::size_t>(state.work.samples.slots());
+        const float* block = &state.farthest[std::countr_zero(m) * slots];
+        farthest = std::max(farthest, *std::max_element(block, block + slots));
+    }
+    state.tile_farthest = farthest;
+}
+
+// The tile's triangles by their nearest w, and no sample sees one nearer than `nearest`.
+struct Ordered {
+    float nearest;
+    std::uint32_t entry;
+};
+std::vector<Ordered> front_to_back(const TileWork& work) {
+    // Rounding may put a hit a few ulps in front of the nearest vertex. An orthographic w says nothing about depth.
+    const float margin = 1.0f - 16.0f * kUnitRoundoff;
+    std::vector<Ordered> order;
+    order.reserve(work.list.size());
+    for (const std::uint32_t entry : work.list)
+        order.push_back({work.frame.view.perspective ? work.triangles[entry].nearest_w * margin : -INFINITY, entry});
+    std::sort(order.begin(), order.end(), [](const Ordered& a, const Ordered& b) {
+        return a.nearest < b.nearest || (a.nearest == b.nearest && a.entry < b.entry);
+    });
+    return order;
+}
+
+void cover_front_to_back(TileState& state) {
+    constexpr int kBetweenUpdates = 16;
+    const CullTest& camera_plane_test = *find_cull_test("improved-dual-space");
+    int until_update = kBetweenUpdates;
+    for (const Ordered& next : front_to_back(state.work)) {
+        if (next.nearest > state.tile_farthest) return;  // so are all that follow
+        cover_triangle(state, state.work.triangles[next.entry], next.nearest, camera_plane_test);
+        if (--until_update == 0) {
+            update_tile_farthest(state);
+            until_update = kBetweenUpdates;
+        }
+    }
 }
 
 }  // namespace
 
 void cover_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
-    TileState state{work, hits, counts, cell_centre(work.frame.view, work.tile.cell_x(), work.tile.cell_y()), {}, {}, 0, {}, {}, {}, {},
-                    {}, {}, {}, {}, {}, {}, 0};
+    TileState state(work, hits, counts);
     const int slots = work.samples.slots();
     const int left = work.tile.cell_x() * kCellSize, top = work.tile.cell_y() * kCellSize;
     state.strata = work.samples.strata(work.tile.cell_x(), work.tile.cell_y());
@@ -384,10 +465,13 @@ void cover_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
     state.tile_blocks = block_mask((work.tile.x0 - left) / kBlockSize, (work.tile.x1 - 1 - left) / kBlockSize,
                                    (work.tile.y0 - top) / kBlockSize, (work.tile.y1 - 1 - top) / kBlockSize);
     state.block_samples.resize(kBlocksPerCell);
-    for (int b = 0; b < kBlocksPerCell; ++b)
+    for (int b = 0; b < kBlocksPerCell; ++b) {
+        state.block_x[b] = block_x(b);
+        state.block_y[b] = block_y(b);
         state.block_samples[b] = work.samples.block(left / kBlockSize + b % kCellBlocks, top / kBlockSize + b / kCellBlocks).data();
+    }
     state.farthest.assign(static_cast<std::size_t>(kBlocksPerCell) * slots, INFINITY);
-    state.jobs.resize(static_cast<std::size_t>(kBlocksPerCell) * slots + 1);
+    state.jobs.resize(static_cast<std::size_t>(kBlocksPerCell) * slots + 8);  // list_jobs writes up to 7 beyond
     state.survivors.resize(state.jobs.size());
 
     // Pixels beyond the tile's border take no hits: nothing is nearer than -infinity.
@@ -402,8 +486,7 @@ void cover_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
     };
     const bool cut = work.tile.x1 % kBlockSize != 0 || work.tile.y1 % kBlockSize != 0;
     if (cut) for_each_outside_lane([&](std::size_t s) { hits.depth[s] = -INFINITY; });
-    const CullTest& camera_plane_test = *find_cull_test("improved-dual-space");
-    for (const std::uint32_t entry : work.list) cover_triangle(state, work.triangles[entry], camera_plane_test);
+    cover_front_to_back(state);
     if (cut) for_each_outside_lane([&](std::size_t s) { hits.depth[s] = INFINITY; });
 }
 

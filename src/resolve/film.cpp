@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "resolve/filter.h"
 #include "shade/sample_order.h"
@@ -24,32 +25,67 @@ float contained(float x) {
     return std::isfinite(x) ? std::clamp(x, -kBrightest, kBrightest) : 0.0f;
 }
 
-// A sample as it enters the sums: red, green, blue, alpha, and 1 for the weight.
-struct Shown {
-    float values[kSums];
-};
+// A sample as it enters the sums.
+Float4 sample_of(const glm::vec3& color, float alpha) {
+    return Float4{contained(color.x), contained(color.y), contained(color.z), alpha};
+}
 
-// Sums of the tile's own pixels and the ring around it, before they meet other tiles'.
-struct Patch {
-    static constexpr int kSize = kCellSize + 2;
-    std::int64_t sums[kSize][kSize][kSums] = {};
-};
-
-// For one pixel q: its samples' weighted sums for each of the up to 3x3 pixels p that they reach.
+// For one pixel q: its samples' weighted sums for each of the up to 3x3 pixels p = q + (i - 1, j - 1) that they reach.
 struct PixelSums {
     double total[3][3][kSums] = {};
-    float run[3][3][kSums] = {};
+    Float4 colors[3][3] = {};  // red, green, blue, alpha
+    Float4 weights[3] = {};    // lane i
+
+    void add(Float4 value, Float4 across, Float4 down) {
+        for (int j = 0; j < 3; ++j) {
+            const Float4 row = across * splat(down[j]);
+            weights[j] += row;
+            for (int i = 0; i < 3; ++i) colors[j][i] += splat(row[i]) * value;
+        }
+    }
     void flush() {
-        for (int j = 0; j < 3; ++j)
-            for (int i = 0; i < 3; ++i)
-                for (int c = 0; c < kSums; ++c) {
-                    total[j][i][c] += run[j][i][c];
-                    run[j][i][c] = 0.0f;
-                }
+        for (int j = 0; j < 3; ++j) {
+            for (int i = 0; i < 3; ++i) {
+                for (int c = 0; c < 4; ++c) total[j][i][c] += colors[j][i][c];
+                total[j][i][4] += weights[j][i];
+                colors[j][i] = splat(0.0f);
+            }
+            weights[j] = splat(0.0f);
+        }
     }
 };
 
+// Offsets of a sample in its pixel, from the top left corner, times 256: exact.
+struct Offsets {
+    int x, y;
+};
+
+Offsets offsets(const SampleVector& vector, int lane) {
+    const float column = static_cast<float>(lane % kBlockSize), row = static_cast<float>(lane / kBlockSize);
+    return {static_cast<int>((vector.x[lane] - column) * 256.0f) & 255,
+            static_cast<int>((-vector.y[lane] - row) * 256.0f) & 255};
+}
+
+std::size_t hit_index(int bx, int by, int slot, int lane, int slots) {
+    const int block = by % kCellBlocks * kCellBlocks + bx % kCellBlocks;
+    return (static_cast<std::size_t>(block) * slots + slot) * kLanes + lane;
+}
+
 }  // namespace
+
+// Sums of the tile's own pixels and the ring around it, before they meet other tiles'.
+struct Film::Patch {
+    static constexpr int kSize = kCellSize + 2;
+    std::int64_t sums[kSize][kSize][kSums] = {};
+
+    // x, y: pixel in the tile.
+    void add(int x, int y, int reach, const PixelSums& from, double share) {
+        for (int j = -reach; j <= reach; ++j)
+            for (int i = -reach; i <= reach; ++i)
+                for (int c = 0; c < kSums; ++c)
+                    sums[y + j + 1][x + i + 1][c] += to_fixed(from.total[j + 1][i + 1][c] * share);
+    }
+};
 
 Film::Film(const FilmSettings& settings)
     : settings_(settings),
@@ -57,12 +93,12 @@ Film::Film(const FilmSettings& settings)
       width_(settings.x1 - settings.x0),
       rows_(settings.band_rows + 2 * reach_ + 1),
       next_row_(settings.y0) {
-    // A sample at offset s of pixel q lies at s - 1/2 + (q - p) from the middle of pixel p.
-    for (int step = -1; step <= 1; ++step)
-        for (int s = 0; s < 256; ++s) {
-            const double weight = filter_weight(settings.filter, s / 256.0 - 0.5 + step);
-            weights_[step + 1][s] = step == 0 || reach_ > 0 ? static_cast<float>(weight) : 0.0f;
-        }
+    // A sample at offset s of pixel q lies at s - 1/2 + (q - p) from the middle of pixel p; lane i is p = q + i - 1.
+    for (int s = 0; s < 256; ++s) {
+        weights_[s] = splat(0.0f);
+        for (int i = 1 - reach_; i <= 1 + reach_; ++i)
+            weights_[s][i] = static_cast<float>(filter_weight(settings.filter, s / 256.0 - 0.5 - (i - 1)));
+    }
     pixels_.assign(static_cast<std::size_t>(width_) * rows_, Pixel{{}, std::numeric_limits<float>::infinity()});
 }
 
@@ -71,66 +107,46 @@ Film::Pixel& Film::pixel(int x, int y) {
 }
 
 void Film::add(const Tile& tile, const SampleTable& samples, const Hits& hits, const TileShade& shade) {
-    const int spp = samples.spp(), slots = samples.slots();
-    const double share = 1.0 / spp;
-    std::vector<Shown> shown(shade.colors.size() + 1);
-    for (std::size_t i = 0; i < shade.colors.size(); ++i) {
-        const glm::vec4& c = shade.colors[i];
-        shown[i] = {{contained(c.x), contained(c.y), contained(c.z), 1.0f, 1.0f}};
-    }
+    // Points, then the background.
     const std::size_t background = shade.colors.size();
-    shown[background] = {{contained(settings_.background.x), contained(settings_.background.y),
-                          contained(settings_.background.z), 0.0f, 1.0f}};
+    std::vector<Float4> shown(background + 1, sample_of(settings_.background, 0.0f));
+    for (std::size_t i = 0; i < background; ++i) shown[i] = sample_of(glm::vec3(shade.colors[i]), 1.0f);
 
-    const auto in_picture = [&](int x, int y) {
-        return x >= settings_.x0 && x < settings_.x1 && y >= settings_.y0 && y < settings_.y1;
-    };
+    const double share = 1.0 / samples.spp();
     Patch patch;
     SampleOrder order;
-    const int step0 = -reach_, step1 = reach_;
     for (int by = tile.y0 / kBlockSize; by * kBlockSize < tile.y1; ++by)
         for (int bx = tile.x0 / kBlockSize; bx * kBlockSize < tile.x1; ++bx) {
             order.read(samples, bx, by);
-            const auto vectors = samples.block(bx, by);
-            const int block = (by % kCellBlocks) * kCellBlocks + bx % kCellBlocks;
-            const std::size_t first = static_cast<std::size_t>(block) * slots * kLanes;
+            const std::span<const SampleVector> vectors = samples.block(bx, by);
             for (int lane = 0; lane < kLanes; ++lane) {
-                const int column = lane % kBlockSize, row = lane / kBlockSize;
-                const int qx = bx * kBlockSize + column, qy = by * kBlockSize + row;
+                const int qx = bx * kBlockSize + lane % kBlockSize, qy = by * kBlockSize + lane / kBlockSize;
                 if (qx < tile.x0 || qx >= tile.x1 || qy < tile.y0 || qy >= tile.y1) continue;
-                const std::uint16_t* slot = order.slots(lane);
                 PixelSums sums;
                 float depth = std::numeric_limits<float>::infinity();
-                for (int index = 0; index < spp; ++index) {
-                    const std::size_t at = first + static_cast<std::size_t>(slot[index]) * kLanes + lane;
-                    const SampleVector& vector = vectors[slot[index]];
-                    const int sx = static_cast<int>((vector.x[lane] - static_cast<float>(column)) * 256.0f) & 255;
-                    const int sy = static_cast<int>((-vector.y[lane] - static_cast<float>(row)) * 256.0f) & 255;
+                for (int index = 0; index < samples.spp(); ++index) {
+                    const int slot = order.slots(lane)[index];
+                    const std::size_t at = hit_index(bx, by, slot, lane, samples.slots());
                     const std::uint32_t point = shade.point_of_sample[at];
-                    const Shown& value = shown[point == kBackground ? background : point];
                     if (point != kBackground) depth = std::min(depth, hits.depth[at]);
-                    // q - p runs against p - q: sums[j][i] is pixel p = q + (i - 1, j - 1).
-                    for (int j = step0; j <= step1; ++j)
-                        for (int i = step0; i <= step1; ++i) {
-                            const float weight = weights_[1 - i][sx] * weights_[1 - j][sy];
-                            float* run = sums.run[j + 1][i + 1];
-                            for (int c = 0; c < kSums; ++c) run[c] += weight * value.values[c];
-                        }
+                    const auto [sx, sy] = offsets(vectors[slot], lane);
+                    sums.add(shown[point == kBackground ? background : point], weights_[sx], weights_[sy]);
                     if ((index + 1) % kFloatRun == 0) sums.flush();
                 }
                 sums.flush();
-                for (int j = step0; j <= step1; ++j)
-                    for (int i = step0; i <= step1; ++i)
-                        for (int c = 0; c < kSums; ++c)
-                            patch.sums[qy + j - tile.y0 + 1][qx + i - tile.x0 + 1][c] +=
-                                to_fixed(sums.total[j + 1][i + 1][c] * share);
-                if (in_picture(qx, qy)) pixel(qx, qy).depth = depth;  // a pixel belongs to one tile
+                patch.add(qx - tile.x0, qy - tile.y0, reach_, sums, share);
+                if (delivers(qx, qy)) pixel(qx, qy).depth = depth;  // a pixel belongs to one tile
             }
         }
+    merge(tile, patch);
+}
 
-    // Pixels within reach of the tile's border are shared with other tiles.
-    for (int y = std::max(tile.y0 - reach_, settings_.y0); y < std::min(tile.y1 + reach_, settings_.y1); ++y)
-        for (int x = std::max(tile.x0 - reach_, settings_.x0); x < std::min(tile.x1 + reach_, settings_.x1); ++x) {
+void Film::merge(const Tile& tile, const Patch& patch) {
+    const int x0 = std::max(tile.x0 - reach_, settings_.x0), x1 = std::min(tile.x1 + reach_, settings_.x1);
+    const int y0 = std::max(tile.y0 - reach_, settings_.y0), y1 = std::min(tile.y1 + reach_, settings_.y1);
+    for (int y = y0; y < y1; ++y)
+        for (int x = x0; x < x1; ++x) {
+            // Pixels within reach of the tile's border are shared with other tiles.
             const bool shared =
                 x < tile.x0 + reach_ || x >= tile.x1 - reach_ || y < tile.y0 + reach_ || y >= tile.y1 - reach_;
             Pixel& to = pixel(x, y);

@@ -6,14 +6,14 @@
 // not depend on its order: tiles may come in any order, from any number of threads and in any size, and the picture
 // keeps each bit.
 
-#include <pentaprism/render.h>
-#include <pentaprism/settings.h>
-
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <pentaprism/render.h>
+#include <pentaprism/settings.h>
 #include <vector>
 
+#include "base/float4.h"
 #include "cover/hits.h"
 #include "sample/sample_table.h"
 #include "shade/tile_shade.h"
@@ -52,13 +52,18 @@ class Film {
         std::int64_t sums[5] = {};  // red, green, blue, alpha, weight
         float depth;
     };
+    struct Patch;
     Pixel& pixel(int x, int y);
+    bool delivers(int x, int y) const {
+        return x >= settings_.x0 && x < settings_.x1 && y >= settings_.y0 && y < settings_.y1;
+    }
+    void merge(const Tile& tile, const Patch& patch);
 
     FilmSettings settings_;
     int reach_, width_, rows_;
-    int next_row_;                                   // the first that was not taken
-    std::array<std::array<float, 256>, 3> weights_;  // [q - p + 1][sample offset * 256]
-    std::vector<Pixel> pixels_;                      // row y at (y mod rows_)
+    int next_row_;                     // the first that was not taken
+    std::array<Float4, 256> weights_;  // of a sample at offset / 256 of a pixel; lane i: for its neighbour i - 1
+    std::vector<Pixel> pixels_;        // row y at (y mod rows_)
     std::vector<float> rgba_, z_;
 };
 

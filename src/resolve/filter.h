@@ -1,6 +1,6 @@
 #pragma once
-// Reconstruction filters: separable, h(dx) * h(dy) of the distance from a pixel's centre in pixels (docs:
-// algorithms, 6.6).
+// Reconstruction filters: separable, h(dx) * h(dy) of the distance from a pixel's centre in pixels
+// (docs/learn/shading.md).
 
 #include <pentaprism/settings.h>
 

@@ -1,9 +1,8 @@
 // Accessors (glTF 2.0, 3.6.2): typed, strided, sparse, normalised views of buffer data.
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
+#include <fmt/format.h>
 
 #include "scene/gltf_document.h"
 
@@ -64,8 +63,9 @@ ElementLayout element_layout(const Accessor& accessor) {
 
 /// `count` elements in a buffer view, proved to lie within it.
 struct Elements {
-    const std::uint8_t* first = nullptr;  ///< null: all zeros
+    const std::uint8_t* first = nullptr;  ///< null: all zeros, or absent
     std::size_t stride = 0, count = 0;
+    bool absent = false;  ///< the buffer has no data
 };
 
 Elements elements_in(const Document& document, const Object& place, Index view, std::size_t offset, std::size_t count,
@@ -75,10 +75,10 @@ Elements elements_in(const Document& document, const Object& place, Index view, 
     if (stride < size && count > 1)
         place.fail(fmt::format("has elements of {} bytes in a buffer view with a stride of {}", size, stride));
     const std::size_t end = count == 0 ? 0 : offset + (count - 1) * stride + size;
-    if (count > bytes.bytes.size() || offset > bytes.bytes.size() || end > bytes.bytes.size()) {
-        place.fail(fmt::format("reads past its buffer view (byte {} of {})", end, bytes.bytes.size()));
+    if (count > bytes.length || offset > bytes.length || end > bytes.length) {
+        place.fail(fmt::format("reads past its buffer view (byte {} of {})", end, bytes.length));
     }
-    return {bytes.bytes.data() + offset, stride, count};
+    return {bytes.absent() ? nullptr : bytes.bytes.data() + offset, stride, count, bytes.absent()};
 }
 
 Object accessor_object(const Document& document, Index accessor) {
@@ -105,10 +105,9 @@ Elements base_elements(const Document& document, const Object& object, const Acc
     const Index view = object.index("bufferView", "bufferViews");
     const std::size_t offset = object.size("byteOffset", 0);
     if (view == kNone) {
-        if (object.has("byteOffset")) object.fail("has a byteOffset but no buffer view");
         if (accessor.count > kMostZeros)
             object.fail(fmt::format("has {} elements but no buffer view to hold them", accessor.count));
-        return {nullptr, 0, accessor.count};
+        return {nullptr, 0, accessor.count, false};
     }
     return elements_in(document, object, view, offset, accessor.count, element_layout(accessor).size, true);
 }
@@ -155,6 +154,7 @@ SparsePart sparse_part(const Document& document, const Object& object, const Acc
                                indices.size("byteOffset", 0), count, component_size(part.index_type), false);
     part.values = elements_in(document, values, values.index("bufferView", "bufferViews"), values.size("byteOffset", 0),
                               count, element_layout(accessor).size, false);
+    if (part.indices.absent || part.values.absent) return part;
     std::int64_t last = -1;
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t at = integer_at(part.indices.first + i * part.indices.stride, part.index_type);
@@ -198,6 +198,7 @@ void for_each_component(const Document& document, Index index, const Accessor& a
     const ElementLayout layout = element_layout(accessor);
     const std::size_t components = static_cast<std::size_t>(accessor.components);
     const Elements base = base_elements(document, object, accessor);
+    if (base.absent) object.fail("is in a buffer without data");
     const auto element = [&](std::size_t to, const std::uint8_t* from) {
         for (std::size_t c = 0; c < components; ++c) store(to * components + c, from + layout.offsets[c]);
     };
@@ -206,6 +207,7 @@ void for_each_component(const Document& document, Index index, const Accessor& a
     }
     if (!object.has("sparse")) return;
     const SparsePart part = sparse_part(document, object, accessor);
+    if (part.indices.absent || part.values.absent) object.fail("is in a buffer without data");
     for (std::size_t i = 0; i < part.indices.count; ++i) {
         element(integer_at(part.indices.first + i * part.indices.stride, part.index_type),
                 part.values.first + i * part.values.stride);
@@ -229,6 +231,7 @@ void check_accessors(const Document& document) {
 
 std::vector<float> read_floats(const Document& document, Index index) {
     const Accessor accessor = describe_accessor(document, index);
+    document.spend(accessor.count * static_cast<std::size_t>(accessor.components));
     std::vector<float> values(accessor.count * static_cast<std::size_t>(accessor.components));
     const int type = accessor.component_type;
     const bool normalized = accessor.normalized;
@@ -242,6 +245,7 @@ std::vector<std::uint32_t> read_integers(const Document& document, Index index) 
     const Accessor accessor = describe_accessor(document, index);
     const int type = accessor.component_type;
     if (type == kFloat) document.fail(accessor.where + " holds floats where integers are needed");
+    document.spend(accessor.count * static_cast<std::size_t>(accessor.components));
     std::vector<std::uint32_t> values(accessor.count * static_cast<std::size_t>(accessor.components));
     for_each_component(document, index, accessor,
                        [&](std::size_t to, const std::uint8_t* from) { values[to] = integer_at(from, type); });

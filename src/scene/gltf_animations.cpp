@@ -1,9 +1,8 @@
 // Animations (glTF 2.0, 3.11).
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <set>
 
 #include "scene/gltf_parts.h"
@@ -11,6 +10,8 @@
 namespace pentaprism::gltf {
 
 namespace {
+
+constexpr int kFloat = 5126;
 
 std::optional<ChannelPath> channel_path(const std::string& path) {
     if (path == "translation") return ChannelPath::kTranslation;
@@ -31,6 +32,7 @@ Interpolation sampler_interpolation(const Object& sampler) {
 void read_times(Document& document, const Object& sampler, std::vector<float>& times) {
     const Index input = sampler.index("input", "accessors");
     require_type(document, input, {"SCALAR"}, sampler.where() + ", input,");
+    if (describe_accessor(document, input).component_type != kFloat) sampler.fail("has times that are not floats");
     times = read_floats(document, input);
     if (!all_finite(times)) sampler.fail("has a time that is not finite");
     if (!std::is_sorted(times.begin(), times.end())) sampler.fail("has times that do not ascend");
@@ -104,11 +106,14 @@ Animation read_animation(Document& document, const Scene& scene, const Object& o
     Animation animation;
     animation.name = object.text("name");
     const auto samplers = object.children("samplers", "sampler");
-    for (const Object& sampler : samplers) {
+    std::vector<std::vector<float>> times(samplers.size());
+    for (std::size_t i = 0; i < samplers.size(); ++i) {
+        const Object& sampler = samplers[i];
         if (!sampler.has("input") || !sampler.has("output")) sampler.fail("has no input or output");
         sampler.index("input", "accessors");
         sampler.index("output", "accessors");
         sampler_interpolation(sampler);
+        read_times(document, sampler, times[i]);
     }
     const auto channels = object.children("channels", "channel");
     if (channels.empty()) object.fail("has no channels");
@@ -121,7 +126,7 @@ Animation read_animation(Document& document, const Scene& scene, const Object& o
         if (!read_target(document, scene, part, channel)) continue;
         const Object& sampler = samplers[index];
         channel.interpolation = sampler_interpolation(sampler);
-        read_times(document, sampler, channel.times);
+        channel.times = times[index];
         read_values(document, sampler, channel);
         normalise_rotations(document, sampler, channel);
         if (!targets.emplace(channel.node, channel.path).second) {

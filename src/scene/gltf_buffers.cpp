@@ -22,7 +22,8 @@ void read_buffer(Document& document, std::size_t i) {
     const Object buffer = document.item("buffers", "buffer", i);
     const std::size_t length = buffer.required_size("byteLength");
     if (length == 0) buffer.fail("has a byteLength of 0");
-    std::vector<std::uint8_t>& bytes = document.buffers[i];
+    std::vector<std::uint8_t>& bytes = document.buffers[i].bytes;
+    document.buffers[i].length = length;
     if (buffer.has("uri")) {
         const std::string uri = buffer.text("uri");
         UriBytes data = read_uri(document, uri);
@@ -34,23 +35,27 @@ void read_buffer(Document& document, std::size_t i) {
     } else if (i == 0 && document.has_binary_chunk) {
         bytes = std::move(document.binary_chunk);
     } else {
-        buffer.fail("has no uri and no binary chunk");
+        // The specification leaves the data of such a buffer to the application: we have none, and say so when it is
+        // read.
+        if (i == 0 && document.is_binary) buffer.fail("has no uri, and the file has no binary chunk");
+        return;
     }
     if (bytes.size() < length)
         buffer.fail(fmt::format("has {} bytes of the {} that byteLength promises", bytes.size(), length));
     bytes.resize(length);
 }
 
-std::span<const std::uint8_t> range_of_buffer(const Document& document, const Object& view) {
+View range_of_buffer(const Document& document, const Object& view) {
     if (!view.has("buffer")) view.fail("has no buffer");
-    const Index buffer = view.index("buffer", "buffers");
+    const Index index = view.index("buffer", "buffers");
     const std::size_t offset = view.size("byteOffset", 0), length = view.required_size("byteLength");
-    const std::vector<std::uint8_t>& bytes = document.buffers[static_cast<std::size_t>(buffer)];
+    const Document::Buffer& buffer = document.buffers[static_cast<std::size_t>(index)];
     if (length == 0) view.fail("has a byteLength of 0");
-    if (offset + length > bytes.size()) {
-        view.fail(fmt::format("reads past its buffer {} (byte {} of {})", buffer, offset + length, bytes.size()));
+    if (offset + length > buffer.length) {
+        view.fail(fmt::format("reads past its buffer {} (byte {} of {})", index, offset + length, buffer.length));
     }
-    return std::span(bytes).subspan(offset, length);
+    if (buffer.bytes.empty()) return {{}, length, 0};
+    return {std::span(buffer.bytes).subspan(offset, length), length, 0};
 }
 
 void apply_filter(const Object& meshopt, const std::string& filter, std::vector<std::uint8_t>& bytes, std::size_t count,
@@ -72,7 +77,9 @@ void apply_filter(const Object& meshopt, const std::string& filter, std::vector<
 
 std::vector<std::uint8_t> decode_meshopt(const Document& document, const Object& view) {
     const Object meshopt = view.extension(kMeshopt);
-    const auto data = range_of_buffer(document, meshopt);
+    const View source = range_of_buffer(document, meshopt);
+    if (source.absent()) meshopt.fail("is in a buffer without data");
+    const auto data = source.bytes;
     const std::size_t stride = meshopt.required_size("byteStride"), count = meshopt.required_size("count");
     const std::string mode = meshopt.text("mode");
     if (stride == 0 || stride > 256 || count > kLargestDecoded / stride) {
@@ -81,6 +88,7 @@ std::vector<std::uint8_t> decode_meshopt(const Document& document, const Object&
     // The encoders never gain more than this; a larger claim is a broken or hostile file.
     if (count * stride / 4096 > data.size())
         meshopt.fail(fmt::format("says {} bytes are packed into {}", count * stride, data.size()));
+    document.spend(count * stride / 4);
     std::vector<std::uint8_t> bytes(count * stride);
     int result = -1;
     if (mode == "ATTRIBUTES") {
@@ -117,9 +125,10 @@ void read_buffers(Document& document) {
             view.fail(fmt::format("has a byteStride of {}", stride));
         if (view.has_extension(kMeshopt)) {
             document.decompressed[i] = decode_meshopt(document, view);
-            document.views[i] = {document.decompressed[i], stride};
+            document.views[i] = {document.decompressed[i], document.decompressed[i].size(), stride};
         } else {
-            document.views[i] = {range_of_buffer(document, view), stride};
+            document.views[i] = range_of_buffer(document, view);
+            document.views[i].stride = stride;
         }
     }
 }

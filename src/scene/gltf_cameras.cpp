@@ -2,7 +2,6 @@
 // https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Khronos/KHR_lights_punctual).
 
 #include <fmt/format.h>
-
 #include <glm/gtc/constants.hpp>
 
 #include "scene/gltf_lens.h"
@@ -11,6 +10,9 @@
 namespace pentaprism::gltf {
 
 namespace {
+
+/// Radians; at pi the picture plane is infinite.
+constexpr double kWidestYfov = 3.1;
 
 double positive(const Object& object, const char* key) {
     if (!object.has(key)) object.fail(fmt::format("has no {}", key));
@@ -21,8 +23,10 @@ double positive(const Object& object, const char* key) {
 
 void read_perspective(Document& document, const Object& object, Camera& camera) {
     camera.yfov = positive(object, "yfov");
-    if (camera.yfov >= glm::pi<double>())
-        object.fail(fmt::format("has a yfov of {}; it must be below pi", camera.yfov));
+    if (camera.yfov >= glm::pi<double>()) {
+        document.warn(fmt::format("{} has a yfov of {}; {} is used", object.where(), camera.yfov, kWidestYfov));
+        camera.yfov = kWidestYfov;
+    }
     if (object.has("aspectRatio")) camera.aspect = positive(object, "aspectRatio");
     camera.znear = positive(object, "znear");
     if (object.has("zfar")) camera.zfar = positive(object, "zfar");

@@ -1,11 +1,10 @@
 // The outside of a glTF file: text or binary container (glTF 2.0, section 4), URIs, files beside it.
 
-#include <fmt/format.h>
-#include <pentaprism/error.h>
-
 #include <cerrno>
 #include <cstring>
+#include <fmt/format.h>
 #include <fstream>
+#include <pentaprism/error.h>
 
 #include "scene/gltf_document.h"
 
@@ -160,7 +159,12 @@ void read_container(const fs::path& file, Document& document) {
     if (!whole.problem.empty()) throw Error(ErrorKind::kScene, file.string() + ": " + whole.problem);
 
     std::span<const std::uint8_t> json = whole.bytes;
-    if (json.size() >= 4 && word(json, 0) == kMagic) json = split_binary(json, document);
+    if (json.empty()) document.fail("is empty");
+    document.is_binary = json.size() >= 4 && word(json, 0) == kMagic;
+    if (document.is_binary)
+        json = split_binary(json, document);
+    else if (file.extension() == ".glb")
+        document.fail("is not a binary glTF: it does not begin with \"glTF\"");
     try {
         document.json = Json::parse(json.begin(), json.end());
     } catch (const Json::exception& problem) {

@@ -1,16 +1,22 @@
 #include "scene/gltf_document.h"
 
-#include <fmt/format.h>
-#include <pentaprism/error.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
+#include <pentaprism/error.h>
 
 namespace pentaprism::gltf {
 
 namespace {
 
+constexpr const char* kRootPlace = "the file";
 constexpr std::size_t kLargestSize = std::size_t{1} << 48;
+
+constexpr std::size_t kMostWarnings = 100;
+/// Numbers that all accessors together may become: a small file can name the same large accessor a million times. Many
+/// primitives sharing one vertex buffer are common, hence the factor.
+constexpr std::size_t kFreeComponents = std::size_t{1} << 26;
+constexpr std::size_t kComponentsPerByte = 64;
 
 }  // namespace
 
@@ -19,8 +25,18 @@ void Document::fail(const std::string& what) const {
 }
 
 void Document::warn(const std::string& what) {
-    const std::string line = name + ": " + what;
-    if (std::find(warnings.begin(), warnings.end(), line) == warnings.end()) warnings.push_back(line);
+    if (!warned.insert(what).second) return;
+    if (warned.size() < kMostWarnings) warnings.push_back(name + ": " + what);
+    if (warned.size() == kMostWarnings) warnings.push_back(name + ": more warnings are left out");
+}
+
+void Document::spend(std::size_t components) const {
+    decoded += components;
+    std::size_t bytes = 0;
+    for (const Buffer& buffer : buffers) bytes += buffer.bytes.size();
+    if (decoded > kFreeComponents + kComponentsPerByte * bytes) {
+        fail("holds more data than can be read (the same accessors are used too often)");
+    }
 }
 
 std::size_t Document::count(const char* list) const {
@@ -32,6 +48,10 @@ std::size_t Document::count(const char* list) const {
 
 Object Document::item(const char* list, const char* name, std::size_t i) const {
     return {*this, json.at(list).at(i), fmt::format("{} {}", name, i)};
+}
+
+Object Document::root() const {
+    return {*this, json, kRootPlace};
 }
 
 Object::Object(const Document& document, const Json& json, std::string where)
@@ -138,10 +158,14 @@ std::vector<Index> Object::indices(const char* key, const char* list) const {
     return result;
 }
 
+std::string Object::place_of(const std::string& part) const {
+    return where_ == kRootPlace ? part : where_ + ", " + part;
+}
+
 Object Object::child(const char* key) const {
     const Json* value = member(key);
     if (value == nullptr) fail(fmt::format("has no {}", key));
-    return {*document_, *value, fmt::format("{}, {},", where_, key)};
+    return {*document_, *value, place_of(key)};
 }
 
 std::vector<Object> Object::children(const char* key, const char* name) const {
@@ -150,7 +174,7 @@ std::vector<Object> Object::children(const char* key, const char* name) const {
     if (!value->is_array()) fail(fmt::format("has a {} that is not an array", key));
     std::vector<Object> result;
     for (std::size_t i = 0; i < value->size(); ++i) {
-        result.emplace_back(*document_, (*value)[i], fmt::format("{}, {} {}", where_, name, i));
+        result.emplace_back(*document_, (*value)[i], place_of(fmt::format("{} {}", name, i)));
     }
     return result;
 }
@@ -163,7 +187,7 @@ bool Object::has_extension(const char* name) const {
 }
 
 Object Object::extension(const char* name) const {
-    return {*document_, json_->at("extensions").at(name), fmt::format("{}, {},", where_, name)};
+    return {*document_, json_->at("extensions").at(name), place_of(name)};
 }
 
 }  // namespace pentaprism::gltf

@@ -3,13 +3,12 @@
 // readers of meshes, materials, nodes... use comes through here, so that a broken file ends in one message and never in
 // a bad read.
 
-#include <pentaprism/scene.h>
-
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <pentaprism/scene.h>
 #include <set>
 #include <span>
 #include <string>
@@ -54,17 +53,19 @@ class Object {
     Object extension(const char* name) const;
 
   private:
+    std::string place_of(const std::string& part) const;
     const Json* member(const char* key) const;
-    std::size_t to_size(const Json& value, const char* key) const;
     const Document* document_;
     const Json* json_;
     std::string where_;
 };
 
-/// A buffer view after decompression. `stride` is 0 where the file gives none: elements are tightly packed.
+/// A buffer view after decompression. `bytes` is empty where the buffer is only a placeholder (no uri, no chunk): then
+/// ranges can be checked but nothing can be read. `stride` is 0 where the file gives none: elements are tightly packed.
 struct View {
     std::span<const std::uint8_t> bytes;
-    std::size_t stride = 0;
+    std::size_t length = 0, stride = 0;
+    bool absent() const { return bytes.empty(); }
 };
 
 struct Document {
@@ -72,20 +73,29 @@ struct Document {
     std::filesystem::path folder;  ///< where relative URIs start
     Json json;
     std::vector<std::uint8_t> binary_chunk;  ///< of a .glb
-    bool has_binary_chunk = false;
-    std::vector<std::vector<std::uint8_t>> buffers;
+    bool is_binary = false, has_binary_chunk = false;
+    struct Buffer {
+        std::vector<std::uint8_t> bytes;  ///< empty for a placeholder
+        std::size_t length = 0;
+    };
+    std::vector<Buffer> buffers;
     std::vector<std::vector<std::uint8_t>> decompressed;  ///< storage of the views that were compressed
     std::vector<View> views;
+    std::vector<int> largest_joints;  ///< that vertices of each mesh name; kNone for a mesh without joints
     std::vector<std::string> warnings;
+    std::set<std::string> warned;
+    mutable std::size_t decoded = 0;  ///< numbers read through accessors so far
 
     [[noreturn]] void fail(const std::string& what) const;
     /// Adds a warning, once.
     void warn(const std::string& what);
+    /// Counts numbers that are about to be decoded; throws when a file asks for absurdly many.
+    void spend(std::size_t components) const;
     /// Number of elements of a root array, 0 when it is absent.
     std::size_t count(const char* list) const;
     /// Element i of a root array; its place is "NAME i". i must be below count(list).
     Object item(const char* list, const char* name, std::size_t i) const;
-    Object root() const { return {*this, json, "the file"}; }
+    Object root() const;
 };
 
 /// Reads the file and splits a .glb into its chunks.

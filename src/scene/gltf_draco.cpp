@@ -67,6 +67,7 @@ DracoMesh decode_draco(const Document& document, const Object& primitive) {
     const Object extension = primitive.extension("KHR_draco_mesh_compression");
     if (!extension.has("bufferView")) extension.fail("has no bufferView");
     const View& view = document.views[static_cast<std::size_t>(extension.index("bufferView", "bufferViews"))];
+    if (view.absent()) extension.fail("is in a buffer without data");
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(view.bytes.data()), view.bytes.size());
     draco::Decoder decoder;
@@ -76,6 +77,7 @@ DracoMesh decode_draco(const Document& document, const Object& primitive) {
 
     DracoMesh result;
     result.vertex_count = mesh.num_points();
+    document.spend((result.vertex_count + mesh.num_faces()) * 4);
     const Object ids = extension.child("attributes"), attributes = primitive.child("attributes");
     for (const auto& [name, unused] : ids.json().items()) {
         const std::size_t id = ids.size(name.c_str(), 0);

@@ -1,9 +1,8 @@
 // Which glTF extensions are shown as meant, and what is lost with the others.
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
+#include <fmt/format.h>
 #include <string_view>
 
 #include "scene/gltf_parts.h"
@@ -15,7 +14,7 @@ namespace {
 constexpr std::string_view kSupported[] = {
     "EXT_cameras_sensor",    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",         "KHR_draco_mesh_compression",
     "KHR_lights_punctual",   "KHR_materials_unlit",     "KHR_materials_emissive_strength", "KHR_mesh_quantization",
-    "KHR_texture_transform",
+    "KHR_texture_transform", "KHR_node_visibility",
 };
 
 /// Known ones that change nothing in a picture.
@@ -43,7 +42,6 @@ constexpr Loss kLosses[] = {
     {"MSFT_texture_dds", "DDS textures are missing"},
     {"EXT_lights_image_based", "the environment's light is missing"},
     {"KHR_animation_pointer", "only nodes move"},
-    {"KHR_node_visibility", "hidden nodes are shown"},
     {"MSFT_lod", "the finest level of detail is shown"},
 };
 
@@ -61,6 +59,27 @@ bool contains(std::span<const std::string_view> list, const std::string& name) {
     return std::find(list.begin(), list.end(), name) != list.end();
 }
 
+/// Variants are not shown, but what they refer to must exist.
+void check_variants(const Document& document) {
+    constexpr const char* kVariants = "KHR_materials_variants";
+    const std::size_t count = document.root().has_extension(kVariants)
+                                  ? document.root().extension(kVariants).children("variants", "variant").size()
+                                  : 0;
+    for (std::size_t i = 0; i < document.count("meshes"); ++i) {
+        for (const Object& primitive : document.item("meshes", "mesh", i).children("primitives", "primitive")) {
+            if (!primitive.has_extension(kVariants)) continue;
+            for (const Object& mapping : primitive.extension(kVariants).children("mappings", "mapping")) {
+                mapping.index("material", "materials");
+                for (const double variant : mapping.numbers("variants", 0)) {
+                    if (!(variant >= 0.0) || variant >= double(count)) {
+                        mapping.fail(fmt::format("refers to variant {}, but there are {}", variant, count));
+                    }
+                }
+            }
+        }
+    }
+}
+
 }  // namespace
 
 void check_extensions(Document& document) {
@@ -69,6 +88,7 @@ void check_extensions(Document& document) {
         if (contains(kSupported, name) || contains(kHarmless, name)) continue;
         document.fail(fmt::format("requires the glTF extension {}, which is not supported", name));
     }
+    check_variants(document);
     for (const std::string& name : used) {
         if (contains(kSupported, name) || contains(kHarmless, name)) continue;
         const auto loss =

@@ -23,6 +23,7 @@ void read_images(Document& document, Scene& scene) {
         if (view != kNone && object.has("uri")) object.fail("has both a uri and a bufferView");
         if (view != kNone) {
             encoded[i] = document.views[static_cast<std::size_t>(view)].bytes;
+            if (encoded[i].empty()) problems[i] = "is in a buffer without data";
         } else if (object.has("uri")) {
             const std::string uri = object.text("uri");
             if (!uri.starts_with("data:")) places[i] += " (" + uri + ")";

@@ -1,5 +1,6 @@
 #include "scene/gltf_lens.h"
 
+#include <cmath>
 #include <fmt/format.h>
 
 namespace pentaprism::gltf {
@@ -21,9 +22,34 @@ void keep_first(std::optional<double>& value, const std::optional<double>& other
     if (!value) value = other;
 }
 
+/// EXT_cameras_sensor as OSPRay Studio and its importer define it: imageSensor { pixels, pixelSize } and lens {
+/// focalLength, apertureRadius, focusDistance, centerPointShift }, all lengths in metres.
+void read_sensor(Document& document, const Object& sensor, LensInfo& lens) {
+    constexpr double kMillimetres = 1000.0;
+    if (sensor.has("imageSensor")) {
+        const Object image = sensor.child("imageSensor");
+        const auto pixels = image.numbers("pixels", 2), size = image.numbers("pixelSize", 2);
+        if (!pixels.empty() && !size.empty() && pixels[0] * size[0] > 0.0)
+            lens.sensor_width_mm = pixels[0] * size[0] * kMillimetres;
+    }
+    if (!sensor.has("lens")) return;
+    const Object glass = sensor.child("lens");
+    const double focal_length = glass.number("focalLength", 0.0), radius = glass.number("apertureRadius", 0.0);
+    if (focal_length > 0.0) lens.focal_length_mm = focal_length * kMillimetres;
+    if (focal_length > 0.0 && radius > 0.0) lens.fstop = focal_length / (2.0 * radius);
+    if (focal_length <= 0.0 && radius > 0.0)
+        document.warn(glass.where() + " has an apertureRadius but no focalLength; it is ignored");
+    if (const double distance = glass.number("focusDistance", 0.0); distance > 0.0) lens.focus_distance = distance;
+    for (const double shift : glass.numbers("centerPointShift", 2)) {
+        if (shift != 0.0)
+            document.warn(glass.where() + " has a centerPointShift, which is not supported; the lens is centred");
+    }
+}
+
 }  // namespace
 
 void read_lens(Document& document, const Object& owner, LensInfo& lens) {
+    if (owner.has_extension("EXT_cameras_sensor")) read_sensor(document, owner.extension("EXT_cameras_sensor"), lens);
     const auto found = owner.json().find("extras");
     if (found == owner.json().end() || !found->is_object()) return;
     const auto number = [&](const char* key, double low) { return usable_number(document, owner, *found, key, low); };

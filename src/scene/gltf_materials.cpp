@@ -1,9 +1,8 @@
 // Textures, samplers and materials (glTF 2.0, 3.8 and 3.9) with KHR_texture_transform, KHR_materials_unlit and
 // KHR_materials_emissive_strength.
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "scene/gltf_parts.h"
 

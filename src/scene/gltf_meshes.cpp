@@ -1,9 +1,8 @@
 // Meshes (glTF 2.0, 3.7.2): triangles in all their modes, attributes, skin influences, morph targets.
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "scene/gltf_parts.h"
@@ -174,6 +173,7 @@ void read_influences(Source& source, Primitive& primitive) {
     primitive.influences = static_cast<int>(width);
     primitive.joints.resize(source.vertex_count * width);
     primitive.weights.resize(source.vertex_count * width);
+    bool negative = false;
     for (int set = 0; set < sets; ++set) {
         const auto joints = joint_numbers(source, fmt::format("JOINTS_{}", set).c_str());
         const auto weights = attribute_floats(source, fmt::format("WEIGHTS_{}", set).c_str(), {"VEC4"});
@@ -186,10 +186,10 @@ void read_influences(Source& source, Primitive& primitive) {
             // A joint that weighs nothing may be any number.
             primitive.joints[to] =
                 primitive.weights[to] > 0.0f ? static_cast<std::uint16_t>(joints[i]) : std::uint16_t{0};
-            if (weights[i] < 0.0f)
-                source.document.warn(source.object.where() + " has negative weights; zero is used instead");
+            negative = negative || weights[i] < 0.0f;
         }
     }
+    if (negative) source.document.warn(source.object.where() + " has negative weights; zero is used instead");
     bool unnormalised = false;
     for (std::size_t vertex = 0; vertex < source.vertex_count; ++vertex) {
         float* weights = &primitive.weights[vertex * width];
@@ -261,6 +261,7 @@ void read_indices(Source& source, Primitive& primitive, int mode) {
         order.resize(source.vertex_count);
         for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::uint32_t>(i);
     }
+    if (mode < kTriangles) return;
     if (mode == kTriangles && order.size() % 3 != 0) {
         source.document.warn(fmt::format("{} has {} indices, which are not whole triangles; the rest is ignored",
                                          source.object.where(), order.size()));
@@ -277,10 +278,6 @@ bool read_primitive(Document& document, const Object& object, Primitive& primiti
     const Object attributes = object.child("attributes");
     for (const auto& [name, value] : attributes.json().items()) attributes.index(name.c_str(), "accessors");
     object.index("indices", "accessors");
-    if (mode < kTriangles) {
-        document.warn(object.where() + " holds points or lines, which are not shown");
-        return false;
-    }
     if (!attributes.has("POSITION")) {
         document.warn(object.where() + " has no POSITION and is not shown");
         return false;
@@ -298,6 +295,11 @@ bool read_primitive(Document& document, const Object& object, Primitive& primiti
     read_colors(source, primitive);
     read_influences(source, primitive);
     read_targets(source, primitive);
+    if (mode < kTriangles) {
+        document.warn(object.where() + " holds points or lines, which are not shown");
+        return false;
+    }
+    drop_unused_vertices(primitive);
     if (primitive.normals.empty()) make_flat(primitive);
     return true;
 }
@@ -312,9 +314,12 @@ void read_meshes(Document& document, Scene& scene) {
         const auto primitives = object.children("primitives", "primitive");
         if (primitives.empty()) object.fail("has no primitives");
         std::size_t targets = 0;
+        int largest_joint = kNone;
         for (const Object& part : primitives) {
             Primitive primitive;
-            if (read_primitive(document, part, primitive)) mesh.primitives.push_back(std::move(primitive));
+            const bool shown = read_primitive(document, part, primitive);
+            for (const std::uint16_t joint : primitive.joints) largest_joint = std::max<int>(largest_joint, joint);
+            if (shown) mesh.primitives.push_back(std::move(primitive));
         }
         for (const Primitive& primitive : mesh.primitives) targets = std::max(targets, primitive.targets.size());
         for (Primitive& primitive : mesh.primitives) {
@@ -330,6 +335,7 @@ void read_meshes(Document& document, Scene& scene) {
                 fmt::format("{} has {} weights for {} morph targets", object.where(), mesh.weights.size(), targets));
         }
         mesh.weights.resize(targets, 0.0f);
+        document.largest_joints.push_back(largest_joint);
         scene.meshes.push_back(std::move(mesh));
     }
 }

@@ -1,9 +1,8 @@
 // Nodes, skins and scenes (glTF 2.0, 3.5 and 3.7.3) with EXT_mesh_gpu_instancing.
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
 #include "scene/gltf_lens.h"
 #include "scene/gltf_parts.h"
@@ -162,17 +161,10 @@ void read_inverse_bind_matrices(const Document& document, const Object& object, 
 
 /// Joints that vertices name must exist in each skin that the mesh is used with.
 void check_skinned_nodes(Document& document, Scene& scene) {
-    std::vector<int> largest(scene.meshes.size(), -1);
-    for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-        for (const Primitive& primitive : scene.meshes[i].primitives) {
-            for (const std::uint16_t joint : primitive.joints)
-                largest[i] = std::max(largest[i], static_cast<int>(joint));
-        }
-    }
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
         Node& node = scene.nodes[i];
         if (node.skin == kNone) continue;
-        const int joint = largest[static_cast<std::size_t>(node.mesh)];
+        const int joint = document.largest_joints[static_cast<std::size_t>(node.mesh)];
         const std::size_t joints = scene.skins[static_cast<std::size_t>(node.skin)].joints.size();
         if (joint < 0) {
             document.warn(
@@ -221,16 +213,27 @@ void read_roots(Document& document, Scene& scene) {
         }
     }
     for (Node& node : scene.nodes) node.visible = false;
+    std::vector<bool> hidden(scene.nodes.size(), false);
+    for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+        const Object node = document.item("nodes", "node", i);
+        if (node.has_extension("KHR_node_visibility"))
+            hidden[i] = !node.extension("KHR_node_visibility").boolean("visible", true);
+    }
+    std::vector<bool> reached(scene.nodes.size(), false);
     std::vector<Index> open = scene.roots;
     for (const Index root : scene.roots) {
         if (scene.nodes[static_cast<std::size_t>(root)].parent != kNone)
             document.fail(fmt::format("node {} is a root of the scene but has a parent", root));
     }
     while (!open.empty()) {
-        Node& node = scene.nodes[static_cast<std::size_t>(open.back())];
-        if (node.visible) document.fail(fmt::format("node {} is twice in the scene", open.back()));
+        const auto i = static_cast<std::size_t>(open.back());
         open.pop_back();
-        node.visible = true;
+        if (reached[i]) document.fail(fmt::format("node {} is twice in the scene", i));
+        reached[i] = true;
+        Node& node = scene.nodes[i];
+        // Parents come before their children, and hide them.
+        hidden[i] = hidden[i] || (node.parent != kNone && hidden[static_cast<std::size_t>(node.parent)]);
+        node.visible = !hidden[i];
         open.insert(open.end(), node.children.begin(), node.children.end());
     }
 }

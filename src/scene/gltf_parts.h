@@ -7,6 +7,9 @@
 
 namespace pentaprism::gltf {
 
+/// Throws where a member of the JSON has a type that glTF does not allow there.
+void check_types(const Document& document);
+
 /// Refuses required extensions that are not supported and warns of used ones.
 void check_extensions(Document& document);
 

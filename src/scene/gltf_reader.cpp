@@ -1,9 +1,8 @@
 #include "scene/gltf_reader.h"
 
 #include <fmt/format.h>
-#include <pentaprism/error.h>
-
 #include <new>
+#include <pentaprism/error.h>
 #include <stdexcept>
 
 #include "scene/gltf_parts.h"
@@ -23,6 +22,7 @@ void check_asset(gltf::Document& document) {
 }
 
 Scene read_scene(gltf::Document& document) {
+    gltf::check_types(document);
     check_asset(document);
     gltf::check_extensions(document);
     gltf::read_buffers(document);

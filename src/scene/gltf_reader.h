@@ -1,9 +1,8 @@
 #pragma once
 // glTF 2.0 files, text or binary (https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html).
 
-#include <pentaprism/scene.h>
-
 #include <filesystem>
+#include <pentaprism/scene.h>
 
 namespace pentaprism {
 

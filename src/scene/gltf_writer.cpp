@@ -9,17 +9,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <glm/common.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <span>
-#include <tuple>
+
+#include "image/part_file.h"
 
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STB_IMAGE_WRITE_STATIC
@@ -441,35 +439,13 @@ std::string Writer::document() {
     return file + chunks;
 }
 
-[[noreturn]] void fail(const std::filesystem::path& file, const std::string& reason) {
-    throw Error(ErrorKind::kOutput, fmt::format("{}: cannot be written: {}", file.string(), reason));
-}
-
 }  // namespace
 
 void write_glb(const Scene& scene, const std::filesystem::path& file) {
     const std::string bytes = Writer(scene).document();
-    std::filesystem::path part = file;
-    part += ".part";
-    {
-        errno = 0;
-        std::ofstream out(part, std::ios::binary | std::ios::trunc);
-        if (out) out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-        if (out) out.close();
-        if (!out) {
-            const std::string reason = std::strerror(errno != 0 ? errno : EIO);
-            std::error_code ignored;
-            std::filesystem::remove(part, ignored);
-            fail(file, reason);
-        }
-    }
-    std::error_code error;
-    std::filesystem::rename(part, file, error);
-    if (error) {
-        std::error_code ignored;
-        std::filesystem::remove(part, ignored);
-        fail(file, error.message());
-    }
+    PartFile part(file);
+    part.write(bytes.data(), bytes.size());
+    part.commit();
 }
 
 }  // namespace pentaprism

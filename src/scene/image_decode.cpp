@@ -1,10 +1,9 @@
 #include "scene/image_decode.h"
 
 #include <fmt/format.h>
-#include <stb_image.h>
-
 #include <limits>
 #include <memory>
+#include <stb_image.h>
 
 namespace pentaprism {
 

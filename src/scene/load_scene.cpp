@@ -1,10 +1,9 @@
 // One door for all kinds of scenes.
 
-#include <pentaprism/error.h>
-#include <pentaprism/scene.h>
-
 #include <algorithm>
 #include <cctype>
+#include <pentaprism/error.h>
+#include <pentaprism/scene.h>
 
 #include "scene/gltf_reader.h"
 #include "scene/obj_reader.h"

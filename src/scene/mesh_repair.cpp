@@ -1,6 +1,7 @@
 #include "scene/mesh_repair.h"
 
 #include <glm/geometric.hpp>
+#include <limits>
 
 namespace pentaprism {
 
@@ -25,6 +26,23 @@ void gather(std::vector<T>& values, std::span<const std::uint32_t> indices, std:
         for (std::size_t k = 0; k < width; ++k) gathered.push_back(values[index * width + k]);
     }
     values = std::move(gathered);
+}
+
+/// New vertex i is the old vertex order[i], in all attributes and morph targets.
+void gather_vertices(Primitive& primitive, std::span<const std::uint32_t> order) {
+    gather(primitive.positions, order);
+    gather(primitive.normals, order);
+    gather(primitive.tangents, order);
+    gather(primitive.texcoords[0], order);
+    gather(primitive.texcoords[1], order);
+    gather(primitive.colors, order);
+    gather(primitive.joints, order, static_cast<std::size_t>(primitive.influences));
+    gather(primitive.weights, order, static_cast<std::size_t>(primitive.influences));
+    for (MorphTarget& target : primitive.targets) {
+        gather(target.positions, order);
+        gather(target.normals, order);
+        gather(target.tangents, order);
+    }
 }
 
 std::vector<glm::vec3> flat_normals(std::span<const glm::vec3> corners) {
@@ -52,20 +70,27 @@ std::vector<glm::vec3> smooth_normals(std::span<const glm::vec3> positions, std:
     return normals;
 }
 
+void drop_unused_vertices(Primitive& primitive) {
+    constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> numbers(primitive.positions.size(), kUnused), used;
+    for (const std::uint32_t index : primitive.indices) numbers[index] = 0;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        if (numbers[i] == kUnused) continue;
+        numbers[i] = static_cast<std::uint32_t>(used.size());
+        used.push_back(static_cast<std::uint32_t>(i));
+    }
+    if (used.size() == numbers.size()) return;
+    gather_vertices(primitive, used);
+    for (std::uint32_t& index : primitive.indices) index = numbers[index];
+}
+
 void make_flat(Primitive& primitive) {
-    const std::vector<std::uint32_t> indices = primitive.indices;
-    gather(primitive.positions, indices);
-    gather(primitive.texcoords[0], indices);
-    gather(primitive.texcoords[1], indices);
-    gather(primitive.colors, indices);
-    gather(primitive.joints, indices, static_cast<std::size_t>(primitive.influences));
-    gather(primitive.weights, indices, static_cast<std::size_t>(primitive.influences));
-    for (std::size_t i = 0; i < indices.size(); ++i) primitive.indices[i] = static_cast<std::uint32_t>(i);
+    gather_vertices(primitive, std::vector<std::uint32_t>(primitive.indices));
+    for (std::size_t i = 0; i < primitive.indices.size(); ++i) primitive.indices[i] = static_cast<std::uint32_t>(i);
     primitive.normals = flat_normals(primitive.positions);
     // Tangents belong to the normals that are missing.
     primitive.tangents.clear();
     for (MorphTarget& target : primitive.targets) {
-        gather(target.positions, indices);
         target.normals.clear();
         target.tangents.clear();
         if (target.positions.empty()) continue;

@@ -1,12 +1,11 @@
 #include "scene/mtl_reader.h"
 
-#include <fmt/format.h>
-#include <tiny_obj_loader.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <fstream>
 #include <iterator>
+#include <tiny_obj_loader.h>
 
 #include "scene/image_decode.h"
 

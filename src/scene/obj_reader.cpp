@@ -3,20 +3,19 @@
 
 #include "scene/obj_reader.h"
 
-#include <fmt/format.h>
-#include <pentaprism/error.h>
-#include <tiny_obj_loader.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <fmt/format.h>
 #include <fstream>
 #include <glm/geometric.hpp>
 #include <map>
 #include <new>
+#include <pentaprism/error.h>
 #include <sstream>
 #include <stdexcept>
+#include <tiny_obj_loader.h>
 
 #include "scene/mtl_reader.h"
 #include "scene/polygon.h"
@@ -69,8 +68,8 @@ int resolve(const File& file, int index, std::size_t defined, const char* what) 
     if (index > 0) return index - 1;
     if (index == 0) return -1;
     if (static_cast<std::size_t>(-static_cast<std::int64_t>(index)) > defined) {
-        fail(file.scene, fmt::format("face {} refers to {} {}, but only {} come before it", file.polygons.size() + 1,
-                                     what, index, defined));
+        fail(file.scene, fmt::format("face {} refers to {} {}, but only {} come before it", file.polygons.size(), what,
+                                     index, defined));
     }
     return static_cast<int>(defined) + index;
 }

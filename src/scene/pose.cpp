@@ -2,12 +2,11 @@
 
 #include "scene/pose.h"
 
-#include <fmt/format.h>
-#include <pentaprism/error.h>
-
 #include <algorithm>
 #include <charconv>
+#include <fmt/format.h>
 #include <glm/gtc/matrix_transform.hpp>
+#include <pentaprism/error.h>
 
 #include "scene/keyframes.h"
 

@@ -1,11 +1,12 @@
 #include "shade/shade_tile.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <optional>
+#include <span>
 
 #include "bound/local_triangle.h"
-#include "cover/exact.h"
+#include "shade/projection.h"
 #include "shade/sample_order.h"
 #include "shade/shaded_triangle.h"
 
@@ -25,20 +26,19 @@ glm::vec4 contained(const glm::vec3& color) {
 // The mean of barycentrics, inside the triangle: rounding, and slivers' samples, may lie just outside.
 class Mean {
   public:
-    void add(const float b[3]) {
-        const glm::vec3 value(b[0], b[1], b[2]);
-        if (!std::isfinite(value.x + value.y + value.z)) return;
-        sum_ += value;
+    void add(Float4 b) {
+        if (!std::isfinite(b[0] + b[1] + b[2])) return;
+        sum_ += b;
         ++count_;
     }
     glm::vec3 value() const {
-        const glm::vec3 inside(std::max(sum_.x, 0.0f), std::max(sum_.y, 0.0f), std::max(sum_.z, 0.0f));
+        const glm::vec3 inside(std::max(sum_[0], 0.0f), std::max(sum_[1], 0.0f), std::max(sum_[2], 0.0f));
         const float total = inside.x + inside.y + inside.z;
         return count_ > 0 && total > 0.0f ? inside / total : glm::vec3(1.0f / 3.0f);
     }
 
   private:
-    glm::vec3 sum_{0.0f};
+    Float4 sum_ = splat(0.0f);
     int count_ = 0;
 };
 
@@ -51,15 +51,15 @@ class LocalRun {
         triangle_ = triangle;
         segments_ = frame_.parts[frame_.part_of[triangle]].segments;
         ready_.assign(segments_, 0);
-        if (static_cast<int>(local_.size()) < segments_) local_.resize(segments_);
+        if (static_cast<int>(lanes_.size()) < segments_) lanes_.resize(segments_);
     }
-    SampleHit project(const LocalSample& sample) {
-        const int segment = std::clamp(static_cast<int>(sample.t * static_cast<float>(segments_)), 0, segments_ - 1);
+    Seen see(const LocalSample& sample) {
+        const int segment = std::min(static_cast<int>(sample.t * static_cast<float>(segments_)), segments_ - 1);
         if (!ready_[segment]) {
-            local_[segment] = localize(frame_, triangle_, segment, centre_);
+            lanes_[segment] = CornerLanes(localize(frame_, triangle_, segment, centre_));
             ready_[segment] = 1;
         }
-        return project_sample(local_[segment], sample);
+        return project(lanes_[segment], sample);
     }
 
   private:
@@ -68,7 +68,7 @@ class LocalRun {
     std::uint32_t triangle_ = 0;
     int segments_ = 1;
     std::vector<std::uint8_t> ready_;
-    std::vector<LocalTriangle> local_;
+    std::vector<CornerLanes> lanes_;
 };
 
 // The table's samples of a cell, as the exact test sees them.
@@ -124,13 +124,13 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
                 Mean mean[2];
                 for (; begin < end && sorted_[begin].pixel == pixel; ++begin) {
                     const int slot = sorted_[begin].slot;
-                    const SampleHit hit = run.project(cell.at(pixel, slot));
-                    if (point[hit.front] == none) {
-                        point[hit.front] = static_cast<std::uint32_t>(out.colors.size());
+                    const Seen seen = run.see(cell.at(pixel, slot));
+                    if (point[seen.front] == none) {
+                        point[seen.front] = static_cast<std::uint32_t>(out.colors.size());
                         out.colors.emplace_back();
                     }
-                    mean[hit.front].add(hit.barycentrics);
-                    out.point_of_sample[hit_index(pixel, slot, slots)] = point[hit.front];
+                    mean[seen.front].add(seen.barycentrics);
+                    out.point_of_sample[hit_index(pixel, slot, slots)] = point[seen.front];
                 }
                 for (int front = 0; front < 2; ++front)
                     if (point[front] != none)

@@ -25,12 +25,14 @@ class EveryHardTriangle : public ::testing::TestWithParam<Hard> {};
 TEST_P(EveryHardTriangle, IsSeenOnlyInsideItsScreenBounds) {
     int lost = 0, in_front_of_nearest = 0;
     const int wanted = 50'000 * effort();
-    const int accepted = for_each_accepted(GetParam(), 11, wanted, LensShape::kSquare, true, [&](const HardCase& c, const LocalSample& s, const SampleHit& hit) {
-        const ScreenBox box = screen_bounds(c.moving, c.frame.view.w_near(), c.frame.view.lens.ratio);
-        const double gx = static_cast<double>(c.centre.x) + s.hx, gy = static_cast<double>(c.centre.y) + s.hy;
-        if (!(gx >= box.x0 && gx <= box.x1 && gy >= box.y0 && gy <= box.y1)) ++lost;
-        if (hit.depth < box.nearest_w * (1 - 16 * 0x1p-24)) ++in_front_of_nearest;
-    });
+    const int accepted = for_each_accepted(
+        GetParam(), 11, wanted, LensShape::kSquare, true,
+        [&](const HardCase& c, const LocalSample& s, const SampleHit& hit) {
+            const ScreenBox box = screen_bounds(c.moving, c.frame.view.w_near(), c.frame.view.lens.ratio);
+            const double gx = static_cast<double>(c.centre.x) + s.hx, gy = static_cast<double>(c.centre.y) + s.hy;
+            if (!(gx >= box.x0 && gx <= box.x1 && gy >= box.y0 && gy <= box.y1)) ++lost;
+            if (hit.depth < box.nearest_w * (1 - 16 * 0x1p-24)) ++in_front_of_nearest;
+        });
     EXPECT_GE(accepted, wanted);
     EXPECT_EQ(lost, 0);
     EXPECT_EQ(in_front_of_nearest, 0);
@@ -38,24 +40,28 @@ TEST_P(EveryHardTriangle, IsSeenOnlyInsideItsScreenBounds) {
 
 TEST_P(EveryHardTriangle, IsListedByBinsForThePixelsThatSeeIt) {
     int lost = 0;
-    for_each_accepted(GetParam(), 12, 5'000 * effort(), LensShape::kSquare, true, [&](const HardCase& c, const LocalSample& s, const SampleHit&) {
-        const int px = c.cx * kCellSize + static_cast<int>(std::floor(s.hx + 16)), py = c.cy * kCellSize + static_cast<int>(std::floor(16 - s.hy));
-        const View& view = c.frame.view;
-        if (px >= view.width || py >= view.height) return;
-        const ScreenBox box = screen_bounds(c.moving, view.w_near(), view.lens.ratio);
-        const PixelRect rect = covered_pixels(box, view.width, view.height, {0, view.width, 0, view.height});
-        if (!(px >= rect.x0 && px < rect.x1 && py >= rect.y0 && py < rect.y1)) ++lost;
-    });
+    for_each_accepted(
+        GetParam(), 12, 5'000 * effort(), LensShape::kSquare, true,
+        [&](const HardCase& c, const LocalSample& s, const SampleHit&) {
+            const int px = c.cx * kCellSize + static_cast<int>(std::floor(s.hx + 16)),
+                      py = c.cy * kCellSize + static_cast<int>(std::floor(16 - s.hy));
+            const View& view = c.frame.view;
+            if (px >= view.width || py >= view.height) return;
+            const ScreenBox box = screen_bounds(c.moving, view.w_near(), view.lens.ratio);
+            const PixelRect rect = covered_pixels(box, view.width, view.height, {0, view.width, 0, view.height});
+            if (!(px >= rect.x0 && px < rect.x1 && py >= rect.y0 && py < rect.y1)) ++lost;
+        });
     EXPECT_EQ(lost, 0);
 }
 
 TEST_P(EveryHardTriangle, ShowsOnlyTheSideThatFacingPromises) {
     int wrong = 0, decided = 0;
-    for_each_accepted(GetParam(), 13, 50'000 * effort(), LensShape::kDisk, true, [&](const HardCase& c, const LocalSample&, const SampleHit& hit) {
-        const Facing side = facing(c.moving, c.frame.view.lens.ratio);
-        decided += side != Facing::kMixed;
-        wrong += side == (hit.front ? Facing::kBack : Facing::kFront);
-    });
+    for_each_accepted(GetParam(), 13, 50'000 * effort(), LensShape::kDisk, true,
+                      [&](const HardCase& c, const LocalSample&, const SampleHit& hit) {
+                          const Facing side = facing(c.moving, c.frame.view.lens.ratio);
+                          decided += side != Facing::kMixed;
+                          wrong += side == (hit.front ? Facing::kBack : Facing::kFront);
+                      });
     EXPECT_EQ(wrong, 0);
     if (GetParam() == Hard::kGeneric || GetParam() == Hard::kStatic) {
         EXPECT_GT(decided, 1000) << "a promise that is never made proves nothing";
@@ -94,10 +100,12 @@ bool nine_edge_box_holds(const MovingTriangle& m, double near, double gx, double
 TEST(NineOfTheFifteenEdges, AreNotEnoughAndThatIsCaught) {
     int lost = 0;
     for (const Hard hard : {Hard::kStraddling, Hard::kNearZero, Hard::kLattice})
-        for_each_accepted(hard, 14, 100'000, LensShape::kDisk, true, [&](const HardCase& c, const LocalSample& s, const SampleHit&) {
-            if (c.frame.view.lens.ratio != 1.0) return;
-            lost += !nine_edge_box_holds(c.moving, c.frame.view.w_near(), static_cast<double>(c.centre.x) + s.hx, static_cast<double>(c.centre.y) + s.hy);
-        });
+        for_each_accepted(
+            hard, 14, 100'000, LensShape::kDisk, true, [&](const HardCase& c, const LocalSample& s, const SampleHit&) {
+                if (c.frame.view.lens.ratio != 1.0) return;
+                lost += !nine_edge_box_holds(c.moving, c.frame.view.w_near(), static_cast<double>(c.centre.x) + s.hx,
+                                             static_cast<double>(c.centre.y) + s.hy);
+            });
     EXPECT_GT(lost, 0);
 }
 
@@ -138,7 +146,8 @@ TEST(Bins, ListEverySegmentInEveryTileOfItsRectangleOnceAndInOrder) {
                     ASSERT_EQ(std::vector<std::uint32_t>(listed.begin(), listed.end()), expected);
                 }
             for (std::size_t k = 1; k < triangles.size(); ++k)
-                ASSERT_LT(std::pair(triangles[k - 1].triangle, triangles[k - 1].segment), std::pair(triangles[k].triangle, triangles[k].segment));
+                ASSERT_LT(std::pair(triangles[k - 1].triangle, triangles[k - 1].segment),
+                          std::pair(triangles[k].triangle, triangles[k].segment));
         }
     }
 }

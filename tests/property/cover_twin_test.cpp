@@ -1,5 +1,5 @@
-// The vector kernels of every CPU target, and the scalar path with and without culling, give the same depths and triangles
-// bit for bit.
+// The vector kernels of every CPU target, and the scalar path with and without culling, give the same depths and
+// triangles bit for bit.
 #include <cstdlib>
 #include <cstring>
 #include <gtest/gtest.h>
@@ -61,7 +61,8 @@ const SampleTable& table(int spp, Grouping grouping, double ratio) {
 }
 
 std::size_t covered(const Hits& hits) {
-    return hits.triangle.size() - static_cast<std::size_t>(std::count(hits.triangle.begin(), hits.triangle.end(), kNoTriangle));
+    return hits.triangle.size() -
+           static_cast<std::size_t>(std::count(hits.triangle.begin(), hits.triangle.end(), kNoTriangle));
 }
 
 // Compares the pixels within the limits. Returns the number of samples that hit something.
@@ -83,13 +84,17 @@ std::size_t expect_twins(const Frame& frame, const SampleTable& samples, int til
                 for (int index = 0; index < samples.spp(); ++index) {
                     const int block = py % kCellSize / kBlockSize * kCellBlocks + px % kCellSize / kBlockSize;
                     const int lane = py % kBlockSize * kBlockSize + px % kBlockSize;
-                    const std::size_t s = (static_cast<std::size_t>(block) * samples.slots() + samples.slot_of(px, py, index)) * kLanes + lane;
-                    const bool same = actual.triangle[s] == expected.triangle[s] && std::memcmp(&actual.depth[s], &expected.depth[s], 4) == 0;
+                    const std::size_t s =
+                        (static_cast<std::size_t>(block) * samples.slots() + samples.slot_of(px, py, index)) * kLanes +
+                        lane;
+                    const bool same = actual.triangle[s] == expected.triangle[s] &&
+                                      std::memcmp(&actual.depth[s], &expected.depth[s], 4) == 0;
                     if (!same && different++ == 0)
-                        ADD_FAILURE() << what << ": pixel (" << px << ", " << py << "), sample " << index << ", tile size " << tile_size
-                                      << ", spp " << samples.spp() << ", picture " << frame.view.width << "x" << frame.view.height << ": triangle "
-                                      << actual.triangle[s] << " at " << actual.depth[s] << ", expected " << expected.triangle[s] << " at "
-                                      << expected.depth[s];
+                        ADD_FAILURE() << what << ": pixel (" << px << ", " << py << "), sample " << index
+                                      << ", tile size " << tile_size << ", spp " << samples.spp() << ", picture "
+                                      << frame.view.width << "x" << frame.view.height << ": triangle "
+                                      << actual.triangle[s] << " at " << actual.depth[s] << ", expected "
+                                      << expected.triangle[s] << " at " << expected.depth[s];
                 }
         EXPECT_EQ(different, 0) << "samples of the tile differ";
     };
@@ -104,7 +109,8 @@ std::size_t expect_twins(const Frame& frame, const SampleTable& samples, int til
             fast.cover(tile, actual, counts);
             expect_same(tile, isa);
             if (limits.x0 == 0 && limits.y0 == 0) {  // lanes beyond the border, too
-                EXPECT_TRUE(actual.triangle == expected.triangle && actual.depth == expected.depth) << isa << ", lanes beyond the border";
+                EXPECT_TRUE(actual.triangle == expected.triangle && actual.depth == expected.depth)
+                    << isa << ", lanes beyond the border";
             }
         }
         if (::testing::Test::HasFailure()) break;
@@ -212,7 +218,8 @@ TEST_P(CoverTwins, AgreeInsideACrop) {
         Soup s = soup();
         s.triangles = 3;
         const int x0 = r.below(40), y0 = r.below(30);
-        expect_twins(make_soup(r, s), samples(4), 8 << r.below(3), {x0, r.between(x0 + 1, s.width), y0, r.between(y0 + 1, s.height)});
+        expect_twins(make_soup(r, s), samples(4), 8 << r.below(3),
+                     {x0, r.between(x0 + 1, s.width), y0, r.between(y0 + 1, s.height)});
     }
 }
 
@@ -227,7 +234,8 @@ TEST_P(CoverTwins, AgreeForNumbersOfAnySize) {
 }
 
 TEST_P(CoverTwins, AgreeForTrianglesThatRushAtTheCamera) {
-    // w from far to just in front of the near plane, in layers that nearly coincide: the rounding of r - q shows at the end.
+    // w from far to just in front of the near plane, in layers that nearly coincide: the rounding of r - q shows at the
+    // end.
     Random r(30);
     for (int i = 0; i < 4 * effort(); ++i) {
         Soup s = soup();
@@ -255,8 +263,10 @@ TEST(CoverTwinsOfOneFrame, AgreeForTablesThatAreGroupedForAnotherBlur) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Property, CoverTwins,
-                         ::testing::Values(Blur{"Still", false, false, Grouping::kStill}, Blur{"Motion", true, false, Grouping::kMotion},
-                                           Blur{"Defocus", false, true, Grouping::kDefocus}, Blur{"Both", true, true, Grouping::kBoth}),
+                         ::testing::Values(Blur{"Still", false, false, Grouping::kStill},
+                                           Blur{"Motion", true, false, Grouping::kMotion},
+                                           Blur{"Defocus", false, true, Grouping::kDefocus},
+                                           Blur{"Both", true, true, Grouping::kBoth}),
                          [](const auto& info) { return info.param.name; });
 
 }  // namespace

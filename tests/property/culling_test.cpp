@@ -1,5 +1,5 @@
-// No culling test rejects a sample that the exact test accepts (docs/develop/algorithms.md 4.0, 4.13). Every test of the
-// table is proved here by being in the table; broken tests show that the method would notice.
+// No culling test rejects a sample that the exact test accepts (docs/develop/algorithms.md 4.0, 4.13). Every test of
+// the table is proved here by being in the table; broken tests show that the method would notice.
 #include <gtest/gtest.h>
 #include <string>
 #include <vector>
@@ -53,11 +53,14 @@ class Questions {
         return r.chance(0.2) ? value : limit + static_cast<float>(r.unit()) * (value - limit);
     }
     Domain restricted(Random& r) const {
-        Domain d{lower(r, -1, s_.u), lower(r, 1, s_.u), lower(r, -ratio_, s_.v), lower(r, ratio_, s_.v), lower(r, 0, s_.t), lower(r, 1, s_.t)};
-        return {std::min(d.u0, s_.u), std::max(d.u1, s_.u), std::min(d.v0, s_.v), std::max(d.v1, s_.v), std::min(d.t0, s_.t), std::max(d.t1, s_.t)};
+        Domain d{lower(r, -1, s_.u),     lower(r, 1, s_.u), lower(r, -ratio_, s_.v),
+                 lower(r, ratio_, s_.v), lower(r, 0, s_.t), lower(r, 1, s_.t)};
+        return {std::min(d.u0, s_.u), std::max(d.u1, s_.u), std::min(d.v0, s_.v),
+                std::max(d.v1, s_.v), std::min(d.t0, s_.t), std::max(d.t1, s_.t)};
     }
     Footprint anywhere(Random& r) const {
-        Footprint f{lower(r, -16, s_.hx), lower(r, 16, s_.hx), lower(r, -16, s_.hy), lower(r, 16, s_.hy), restricted(r)};
+        Footprint f{lower(r, -16, s_.hx), lower(r, 16, s_.hx), lower(r, -16, s_.hy), lower(r, 16, s_.hy),
+                    restricted(r)};
         return {std::min(f.x0, s_.hx), std::max(f.x1, s_.hx), std::min(f.y0, s_.hy), std::max(f.y1, s_.hy), f.domain};
     }
 
@@ -76,17 +79,18 @@ Tally ask(const CullTest& test, Hard hard, std::uint64_t seed, int wanted) {
     Random r(seed ^ 0x51ed270b);
     const LensShape shape = seed % 2 == 0 ? LensShape::kDisk : LensShape::kSquare;
     CullState state;
-    tally.accepted = for_each_accepted(hard, seed, wanted, shape, true, [&](const HardCase& c, const LocalSample& s, const SampleHit&) {
-        for (const Question& question : Questions(r, c, s)) {
-            const bool prepared = test.prepare(c.local, question.footprint, state);
-            if (prepared && test.keeps(state, s)) continue;
-            if (tally.lost++ == 0)
-                tally.first = std::string(prepared ? "keeps() " : "prepare() ") + "rejects a sample over a " + question.what +
-                              ", segment " + std::to_string(c.segment) + ", h = (" + std::to_string(s.hx) + ", " +
-                              std::to_string(s.hy) + "), uvt = (" + std::to_string(s.u) + ", " + std::to_string(s.v) + ", " +
-                              std::to_string(s.t) + ")";
-        }
-    });
+    tally.accepted = for_each_accepted(
+        hard, seed, wanted, shape, true, [&](const HardCase& c, const LocalSample& s, const SampleHit&) {
+            for (const Question& question : Questions(r, c, s)) {
+                const bool prepared = test.prepare(c.local, question.footprint, state);
+                if (prepared && test.keeps(state, s)) continue;
+                if (tally.lost++ == 0)
+                    tally.first = std::string(prepared ? "keeps() " : "prepare() ") + "rejects a sample over a " +
+                                  question.what + ", segment " + std::to_string(c.segment) + ", h = (" +
+                                  std::to_string(s.hx) + ", " + std::to_string(s.hy) + "), uvt = (" +
+                                  std::to_string(s.u) + ", " + std::to_string(s.v) + ", " + std::to_string(s.t) + ")";
+            }
+        });
     return tally;
 }
 
@@ -120,9 +124,11 @@ std::string test_name(const ::testing::TestParamInfo<const CullTest*>& info) {
     std::replace(name.begin(), name.end(), '-', '_');
     return name;
 }
-INSTANTIATE_TEST_SUITE_P(Culling, EveryCullTest, ::testing::ValuesIn(cull_table().begin(), cull_table().end()), test_name);
+INSTANTIATE_TEST_SUITE_P(Culling, EveryCullTest, ::testing::ValuesIn(cull_table().begin(), cull_table().end()),
+                         test_name);
 
-// ---- Broken tests, each of which the method must notice ----------------------------------------------------------------
+// ---- Broken tests, each of which the method must notice
+// ----------------------------------------------------------------
 
 const CullTest& sound() {
     return *find_cull_test("improved-dual-space");
@@ -137,7 +143,8 @@ bool without_footprint_width(const LocalTriangle& T, const Footprint& f, CullSta
 }
 bool with_one_vertex_forgotten(const LocalTriangle& T, const Footprint& f, CullState& state) {
     LocalTriangle wrong = T;
-    for (auto* p : {&wrong.qx, &wrong.qy, &wrong.qw, &wrong.qc, &wrong.dx, &wrong.dy, &wrong.dw, &wrong.dc}) (*p)[2] = (*p)[1];
+    for (auto* p : {&wrong.qx, &wrong.qy, &wrong.qw, &wrong.qc, &wrong.dx, &wrong.dy, &wrong.dw, &wrong.dc})
+        (*p)[2] = (*p)[1];
     return sound().prepare(wrong, f, state);
 }
 bool with_unsigned_coc(const LocalTriangle& T, const Footprint& f, CullState& state) {
@@ -186,14 +193,15 @@ TEST_P(ABrokenCullTest, IsCaught) {
     EXPECT_GT(lost, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Culling, ABrokenCullTest,
-                         ::testing::Values(Broken{"NoFootprintWidth", {"", "", without_footprint_width, sound_keeps}},
-                                           Broken{"VertexForgotten", {"", "", with_one_vertex_forgotten, sound_keeps}},
-                                           Broken{"UnsignedCoc", {"", "", with_unsigned_coc, sound_keeps}},
-                                           Broken{"MiddleOfShutter", {"", "", at_the_middle_of_the_shutter, sound_keeps}},
-                                           Broken{"FirstSegmentForAll", {"", "", with_the_first_segment_for_all, sound_keeps}},
-                                           Broken{"OneLensAxisForBoth", {"", "", with_one_lens_axis_for_both, sound_keeps}}),
-                         [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Culling, ABrokenCullTest,
+    ::testing::Values(Broken{"NoFootprintWidth", {"", "", without_footprint_width, sound_keeps}},
+                      Broken{"VertexForgotten", {"", "", with_one_vertex_forgotten, sound_keeps}},
+                      Broken{"UnsignedCoc", {"", "", with_unsigned_coc, sound_keeps}},
+                      Broken{"MiddleOfShutter", {"", "", at_the_middle_of_the_shutter, sound_keeps}},
+                      Broken{"FirstSegmentForAll", {"", "", with_the_first_segment_for_all, sound_keeps}},
+                      Broken{"OneLensAxisForBoth", {"", "", with_one_lens_axis_for_both, sound_keeps}}),
+    [](const auto& info) { return info.param.name; });
 
 }  // namespace
 }  // namespace pentaprism

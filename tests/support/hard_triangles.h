@@ -1,6 +1,6 @@
 #pragma once
-// Moving, defocused triangles that are hard for bounds and culling tests, by class, and samples built forwards onto them:
-// nearly all of these are hits, so that a wrong rejection shows (docs/develop/algorithms.md 4.13).
+// Moving, defocused triangles that are hard for bounds and culling tests, by class, and samples built forwards onto
+// them: nearly all of these are hits, so that a wrong rejection shows (docs/develop/algorithms.md 4.13).
 
 #include <algorithm>
 #include <array>
@@ -14,16 +14,26 @@
 namespace pentaprism::support {
 
 enum class Hard {
-    kGeneric, kStraddling, kNearZero, kCrossingFocus, kArbitraryCoc, kDegenerate, kLattice, kTinyFast, kStatic, kFocusPull, kSliver
+    kGeneric,
+    kStraddling,
+    kNearZero,
+    kCrossingFocus,
+    kArbitraryCoc,
+    kDegenerate,
+    kLattice,
+    kTinyFast,
+    kStatic,
+    kFocusPull,
+    kSliver
 };
-inline constexpr std::array kHardClasses = {Hard::kGeneric, Hard::kStraddling, Hard::kNearZero, Hard::kCrossingFocus,
-                                            Hard::kArbitraryCoc, Hard::kDegenerate, Hard::kLattice, Hard::kTinyFast,
-                                            Hard::kStatic, Hard::kFocusPull, Hard::kSliver};
+inline constexpr std::array kHardClasses = {
+    Hard::kGeneric, Hard::kStraddling, Hard::kNearZero, Hard::kCrossingFocus, Hard::kArbitraryCoc, Hard::kDegenerate,
+    Hard::kLattice, Hard::kTinyFast,   Hard::kStatic,   Hard::kFocusPull,     Hard::kSliver};
 
 inline std::string name_of(Hard hard) {
-    constexpr const char* kNames[] = {"generic in front", "w straddles zero", "w at or near zero", "crosses focus",
-                                      "arbitrary CoC", "degenerate", "small-integer lattice", "tiny and fast", "static",
-                                      "focus pulled", "collinear or thin"};
+    constexpr const char* kNames[] = {"generic in front", "w straddles zero", "w at or near zero",     "crosses focus",
+                                      "arbitrary CoC",    "degenerate",       "small-integer lattice", "tiny and fast",
+                                      "static",           "focus pulled",     "collinear or thin"};
     return kNames[static_cast<int>(hard)];
 }
 
@@ -46,7 +56,8 @@ struct Corners {
 namespace detail {
 
 inline void place(Random& r, Corners& k, double size, double common, double own, double w0, double w1) {
-    const double x0 = r.range(-18, 18), y0 = r.range(-18, 18), mx = r.range(-common, common), my = r.range(-common, common);
+    const double x0 = r.range(-18, 18), y0 = r.range(-18, 18), mx = r.range(-common, common),
+                 my = r.range(-common, common);
     for (int i = 0; i < 3; ++i) {
         const double x = x0 + r.range(-size, size), y = y0 + r.range(-size, size);
         for (int e = 0; e < 2; ++e) {
@@ -65,7 +76,8 @@ inline void focus(Corners& k, int end, double blur, double distance) {
 inline void around_zero(Random& r, Corners& k, double near) {
     for (int i = 0; i < 3; ++i)
         for (int e = 0; e < 2; ++e) {
-            const double special[] = {0.0, near, near * (1 + 0x1p-22), near * (1 - 0x1p-22), 1e-7, -1e-7, 1.0, r.range(-1, 3)};
+            const double special[] = {0.0,   near, near * (1 + 0x1p-22), near * (1 - 0x1p-22), 1e-7,
+                                      -1e-7, 1.0,  r.range(-1, 3)};
             k.w[i][e] = special[r.below(8)];
             k.x[i][e] = r.range(-6, 6);
             k.y[i][e] = r.range(-6, 6);
@@ -79,9 +91,9 @@ inline void make_degenerate(Random& r, Corners& k) {
         auto copy = [&](int to, int from, double f, int other) {
             for (auto* p : {&k.x, &k.y, &k.w, &k.c}) (*p)[to][e] = (*p)[from][e] + f * ((*p)[other][e] - (*p)[from][e]);
         };
-        if (kind == 0) copy(2, 1, 0, 1);                     // an edge
-        if (kind == 1) copy(2, 0, s, 1);                     // collinear
-        if (kind == 2) copy(1, 0, 0, 0), copy(2, 0, 0, 0);   // a point
+        if (kind == 0) copy(2, 1, 0, 1);                    // an edge
+        if (kind == 1) copy(2, 0, s, 1);                    // collinear
+        if (kind == 2) copy(1, 0, 0, 0), copy(2, 0, 0, 0);  // a point
     }
 }
 
@@ -110,12 +122,14 @@ inline Corners hard_corners(Random& r, Hard hard, double near) {
     Corners k{};
     const double blur = r.magnitude(0.1, 60), distance = r.range(1.5, 12), size = r.magnitude(0.2, 50);
     detail::place(r, k, size, r.magnitude(0.1, 50), r.chance(0.5) ? 0 : r.magnitude(0.1, 20), 1, 14);
-    if (hard == Hard::kGeneric) detail::place(r, k, size, r.magnitude(0.1, 50), r.chance(0.5) ? 0 : 10, 6, r.range(6, 9));
+    if (hard == Hard::kGeneric)
+        detail::place(r, k, size, r.magnitude(0.1, 50), r.chance(0.5) ? 0 : 10, 6, r.range(6, 9));
     if (hard == Hard::kStraddling) detail::place(r, k, 40, 40, 20, -2, 3);
     if (hard == Hard::kNearZero) detail::around_zero(r, k, near);
     if (hard == Hard::kTinyFast) detail::place(r, k, r.magnitude(0.02, 1), 200, 0, 4, 4.1);
     const bool pinhole = r.chance(0.15);
-    for (int e = 0; e < 2; ++e) detail::focus(k, e, pinhole ? 0 : blur, hard == Hard::kCrossingFocus ? r.range(4, 8) : distance);
+    for (int e = 0; e < 2; ++e)
+        detail::focus(k, e, pinhole ? 0 : blur, hard == Hard::kCrossingFocus ? r.range(4, 8) : distance);
     if (hard == Hard::kFocusPull) detail::focus(k, 1, r.magnitude(0.1, 60), r.range(1.5, 12));
     if (hard == Hard::kArbitraryCoc)
         for (auto& corner : k.c)
@@ -199,7 +213,8 @@ inline bool aim(Random& r, const HardCase& hard_case, Hard hard, LensShape shape
     const double t = std::floor((tau + T.segment) / T.segments * 16777216.0) / 16777216.0;
     sample.t = static_cast<float>(std::min(t, 1.0 - 0x1p-24));
     sample.u = static_cast<float>(u);
-    sample.v = std::clamp(static_cast<float>(v * hard_case.frame.view.lens.ratio), -hard_case.ratio(), hard_case.ratio());
+    sample.v =
+        std::clamp(static_cast<float>(v * hard_case.frame.view.lens.ratio), -hard_case.ratio(), hard_case.ratio());
     tau = static_cast<double>(sample.t) * T.segments - T.segment;
     double x = 0, y = 0, w = 0;
     for (int i = 0; i < 3; ++i) {

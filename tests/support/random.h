@@ -1,6 +1,6 @@
 #pragma once
-// Random numbers of the property tests: the same on every machine, and independent between seeds (a splitmix state that is a
-// multiple of its own step would give one stream, shifted).
+// Random numbers of the property tests: the same on every machine, and independent between seeds (a splitmix state that
+// is a multiple of its own step would give one stream, shifted).
 
 #include <cmath>
 #include <cstdint>
@@ -24,11 +24,16 @@ class Random {
     /// In [0, 1], often at or next to an end.
     double biased() {
         switch (below(8)) {
-            case 0: return 0.0;
-            case 1: return 1.0;
-            case 2: return unit() * 1e-4;
-            case 3: return 1.0 - unit() * 1e-4;
-            default: return unit();
+            case 0:
+                return 0.0;
+            case 1:
+                return 1.0;
+            case 2:
+                return unit() * 1e-4;
+            case 3:
+                return 1.0 - unit() * 1e-4;
+            default:
+                return unit();
         }
     }
 

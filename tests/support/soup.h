@@ -14,7 +14,7 @@ struct Soup {
     double ratio = 1.0;
     double magnify = 1.0;  ///< of all lengths in space: the picture stays, the numbers grow
     AlphaMode alpha = AlphaMode::kOpaque;
-    int triangles = 11;    ///< of each part; one part for each of `classes`
+    int triangles = 11;  ///< of each part; one part for each of `classes`
     std::vector<Hard> classes{kHardClasses.begin(), kHardClasses.end()};
 };
 
@@ -35,14 +35,16 @@ inline const Scene& translucent_scene(AlphaMode mode) {
 
 namespace detail {
 
-inline void append_knot(Frame& frame, const Soup& soup, const Corners& k, int end, const CellCentre& centre, double depth) {
+inline void append_knot(Frame& frame, const Soup& soup, const Corners& k, int end, const CellCentre& centre,
+                        double depth) {
     for (int i = 0; i < 3; ++i) {
         const double w = soup.orthographic ? 1.0 : k.w[i][end];
         const double over = soup.orthographic && k.w[i][end] != 0 ? 1.0 / k.w[i][end] : 1.0;
         const double c = soup.defocus ? k.c[i][end] * over : 0.0;
         frame.points.emplace_back(static_cast<float>(soup.magnify * (k.x[i][end] * over + centre.x * w)),
                                   static_cast<float>(soup.magnify * (k.y[i][end] * over + centre.y * w)),
-                                  static_cast<float>(soup.orthographic ? 1.0 : soup.magnify * w), static_cast<float>(soup.magnify * c));
+                                  static_cast<float>(soup.orthographic ? 1.0 : soup.magnify * w),
+                                  static_cast<float>(soup.magnify * c));
         if (soup.orthographic) frame.depths.push_back(static_cast<float>(depth + k.w[i][end]));
     }
 }
@@ -72,15 +74,18 @@ inline Frame make_soup(Random& r, const Soup& soup) {
         part.placement = {0, 0, 0, kNone};
         std::vector<std::pair<Corners, CellCentre>> placed;
         for (int t = 0; t < soup.triangles; ++t) {
-            const int columns = (soup.width + kCellSize - 1) / kCellSize, rows = (soup.height + kCellSize - 1) / kCellSize;
+            const int columns = (soup.width + kCellSize - 1) / kCellSize,
+                      rows = (soup.height + kCellSize - 1) / kCellSize;
             placed.emplace_back(hard_corners(r, hard, frame.view.depth_near),
                                 cell_centre(frame.view, r.below(columns), r.below(rows)));
             frame.part_of.push_back(static_cast<std::uint32_t>(frame.parts.size()));
-            for (std::uint32_t i = 0; i < 3; ++i) frame.corners.push_back(part.first_point + 3 * static_cast<std::uint32_t>(t) + i);
+            for (std::uint32_t i = 0; i < 3; ++i)
+                frame.corners.push_back(part.first_point + 3 * static_cast<std::uint32_t>(t) + i);
         }
         // Paths to and fro between the two ends.
         for (int knot = 0; knot <= (part.moves ? part.segments : 0); ++knot)
-            for (const auto& [corners, centre] : placed) detail::append_knot(frame, soup, corners, knot % 2, centre, 3.0 - knot);
+            for (const auto& [corners, centre] : placed)
+                detail::append_knot(frame, soup, corners, knot % 2, centre, 3.0 - knot);
         frame.parts.push_back(part);
     }
     return frame;

@@ -6,16 +6,15 @@
 #include <ImfRational.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
-#include <gtest/gtest.h>
-#include <pentaprism/error.h>
-#include <pentaprism/image.h>
-#include <unistd.h>
-
 #include <cmath>
 #include <fstream>
+#include <gtest/gtest.h>
 #include <iterator>
 #include <limits>
+#include <pentaprism/error.h>
+#include <pentaprism/image.h>
 #include <random>
+#include <unistd.h>
 
 #include "image/tone_curve.h"
 

@@ -1,17 +1,16 @@
 // Range checks of settings, the settings as JSON, and the hash of a scene.
 
-#include <gtest/gtest.h>
-#include <pentaprism/error.h>
-#include <pentaprism/metadata.h>
-#include <pentaprism/settings.h>
-#include <unistd.h>
-
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <gtest/gtest.h>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <pentaprism/error.h>
+#include <pentaprism/metadata.h>
+#include <pentaprism/settings.h>
+#include <unistd.h>
 
 namespace pentaprism {
 namespace {
@@ -30,7 +29,9 @@ std::string refusal(const std::function<void(RenderSettings&)>& change) {
     return "";
 }
 
-TEST(Settings, DefaultsAreValid) { EXPECT_NO_THROW(validate(RenderSettings{})); }
+TEST(Settings, DefaultsAreValid) {
+    EXPECT_NO_THROW(validate(RenderSettings{}));
+}
 
 TEST(Settings, EndsOfEachRangeAreTakenAndWhatIsBeyondIsNot) {
     using S = RenderSettings;
@@ -108,7 +109,8 @@ TEST(SceneHash, IsThatOfTheBytesAndOfWhatTheFileRefersTo) {
     EXPECT_EQ(hash("a.glb"), "b5e9c1ad071b3e7fc779cfaa5e523818") << "what xxh128sum prints for these five bytes";
     EXPECT_EQ(hash("missing.glb"), "99aa06d3014798d86001c324468d497f") << "what xxh128sum prints for no bytes";
 
-    put("a.gltf", R"({"buffers":[{"uri":"my%20data.bin"},{"uri":"data:,x"}],"images":[{"uri":"i.png"},{"bufferView":0}]})");
+    put("a.gltf",
+        R"({"buffers":[{"uri":"my%20data.bin"},{"uri":"data:,x"}],"images":[{"uri":"i.png"},{"bufferView":0}]})");
     put("my data.bin", "one");
     const std::string before = hash("a.gltf");
     put("my data.bin", "two");

@@ -1,9 +1,8 @@
 #pragma once
 // Puts a procedural scene together: what the recipes of the built-in scenes have in common.
 
-#include <pentaprism/scene.h>
-
 #include <functional>
+#include <pentaprism/scene.h>
 #include <string>
 #include <utility>
 #include <vector>

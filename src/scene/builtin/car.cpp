@@ -46,12 +46,12 @@ Section section(double v) {
 
 glm::dvec3 body_point(double u, double v) {
     const Section s = section(v);
-    const double a = kTwoPi * u;  // 0 at the left side (+z is right: the camera's side), a quarter at the bottom
+    const double a = kTwoPi * u;  // 0 at the right side (+z, towards the camera), a quarter at the bottom
     const double c = std::cos(a), d = std::sin(a);
     // A superellipse: fuller than an ellipse.
     const double k = std::pow(std::pow(std::abs(c), 2.6) + std::pow(std::abs(d), 2.6), -1.0 / 2.6);
     const double middle = 0.5 * (s.top + s.bottom), rise = 0.5 * (s.top - s.bottom);
-    return {s.x, middle - rise * k * d, -s.half * k * c};
+    return {s.x, middle - rise * k * d, s.half * k * c};
 }
 
 /// Paint: base colour, a stripe along the top, roundels with a number on both sides and on the nose.
@@ -85,8 +85,8 @@ Image livery(std::string name, glm::dvec3 base, glm::dvec3 stripe, int number) {
             struct Roundel {
                 double u, v, up, right, radius;
             };
-            for (const Roundel& r : {Roundel{0.5, 0.40, 1.0, 1.0, 0.19}, Roundel{1.0, 0.40, -1.0, -1.0, 0.19},
-                                     Roundel{0.0, 0.40, -1.0, -1.0, 0.19}}) {
+            for (const Roundel& r : {Roundel{0.5, 0.40, 1.0, -1.0, 0.19}, Roundel{1.0, 0.40, -1.0, 1.0, 0.19},
+                                     Roundel{0.0, 0.40, -1.0, 1.0, 0.19}}) {
                 const double dy = (u - r.u) * per_u * r.up / r.radius, dx = (v - r.v) * 3.72 * r.right / r.radius;
                 if (dx * dx + dy * dy < 1.0)
                     color = digit(2.5 * dx, 2.5 * dy) ? glm::dvec3(0.01) : glm::dvec3(0.85, 0.84, 0.80);
@@ -99,7 +99,7 @@ Image livery(std::string name, glm::dvec3 base, glm::dvec3 stripe, int number) {
 
 Primitive body(Index material) {
     MeshBuilder m;
-    m.surface(32, 48, body_point);
+    m.surface(30, 44, body_point);
     return m.take(material);
 }
 
@@ -150,13 +150,13 @@ Primitive fittings(Index material, glm::dvec3 helmet) {
             m.color = chrome;
             m.tube(
                 {{{x, 0.64, 0.045 * side}, 0.026}, {{x, 0.78, 0.05 * side}, 0.028}, {{x, 0.815, 0.05 * side}, 0.045}},
-                10, 5);
+                8, 4);
             m.color = {0.30, 0.22, 0.15};
             m.tube({{{x, 0.60, 0.15 * side}, 0.024},
                     {{x - 0.03, 0.56, 0.29 * side}, 0.024},
                     {{x - 0.25, 0.50, 0.30 * side}, 0.024},
                     {{-1.45, 0.47, 0.26 * side}, 0.026}},
-                   6, 9);
+                   5, 7);
         }
         m.color = {0.42, 0.34, 0.26};
         m.tube({{{-1.38, 0.47, 0.26 * side}, 0.05},
@@ -228,7 +228,7 @@ std::vector<Primitive> wheel(double radius, double width, Index rubber, Index me
              {0.97 * radius, 0.9 * h},
              {0.86 * radius, 1.02 * h},
              {rim, 0.8 * h}},
-            30, 13, [](double u, double v, glm::dvec3) {
+            28, 11, [](double u, double v, glm::dvec3) {
                 const bool letters =
                     v > 0.80 && v < 0.87 && std::sin(kTwoPi * 3.0 * u) > 0.2 && std::sin(kTwoPi * 22.0 * u) > -0.3;
                 const double tread = v > 0.33 && v < 0.67 ? 0.8 + 0.2 * std::sin(60.0 * v) : 1.0;
@@ -244,7 +244,7 @@ std::vector<Primitive> wheel(double radius, double width, Index rubber, Index me
              {0.92 * rim, 0.72 * h},
              {0.9 * rim, 0.0},
              {0.92 * rim, -0.75 * h}},
-            26, 9);
+            24, 7);
     m.lathe(
         {{0.17 * rim, -0.8 * h}, {0.2 * rim, -0.2 * h}, {0.17 * rim, 0.5 * h}, {0.12 * rim, 0.95 * h}, {0.0, 1.0 * h}},
         12, 6);
@@ -253,7 +253,7 @@ std::vector<Primitive> wheel(double radius, double width, Index rubber, Index me
     m.tube({{{-0.24 * rim, 0.0, 0.93 * h}, 0.012}, {{0.0, 0.0, 0.99 * h}, 0.026}, {{0.24 * rim, 0.0, 0.93 * h}, 0.012}},
            6, 6);  // knock-off
     m.color = {0.50, 0.50, 0.52};
-    constexpr int kSpokes = 40;
+    constexpr int kSpokes = 36;
     for (int k = 0; k < kSpokes; ++k) {
         // Crossed pairs from both flanges of the hub.
         const double a = kTwoPi * k / kSpokes, lead = (k % 2 == 0 ? 1.0 : -1.0) * degrees(26.0);
@@ -440,7 +440,7 @@ void add_roadside(Assembly& scene) {
             8);
         const Palette palette = kind == 0 ? Palette{{0.05, 0.16, 0.03}, {0.20, 0.34, 0.06}, {0.45, 0.40, 0.08}, 0.1}
                                           : Palette{{0.20, 0.20, 0.03}, {0.48, 0.36, 0.06}, {0.50, 0.22, 0.04}, 0.2};
-        for (int k = 0; k < 165; ++k) {
+        for (int k = 0; k < 140; ++k) {
             const glm::dvec3 d = random.direction();
             const double r = std::cbrt(random.uniform());
             Blade leaf;
@@ -459,7 +459,7 @@ void add_roadside(Assembly& scene) {
         parts.push_back(crown.take(leafy));
         crowns.push_back(scene.add_mesh("tree", std::move(parts)));
     }
-    for (int k = 0; k < 17; ++k) {
+    for (int k = 0; k < 16; ++k) {
         const double x = kFrom + 6.8 * k + random.around(0.0, 1.6), z = -15.0 - 11.0 * random.uniform();
         const double yaw = random.angle();
         const Index node = scene.add_node(
@@ -472,8 +472,8 @@ void add_roadside(Assembly& scene) {
     MeshBuilder tuft;
     add_grass_tuft(tuft, random, 12, 1.0, {{0.10, 0.20, 0.03}, {0.35, 0.42, 0.10}, {0.6, 0.5, 0.2}, 0.15});
     const Index grass = scene.add_node("tall grass", kNone, {}, scene.add_mesh("tall grass", tuft.take(leafy)));
-    for (int k = 0; k < 56; ++k) {
-        const double x = glm::mix(-10.0, 56.0, (k + random.uniform()) / 56.0), z = random.range(3.3, 4.9),
+    for (int k = 0; k < 45; ++k) {
+        const double x = glm::mix(-10.0, 56.0, (k + random.uniform()) / 45.0), z = random.range(3.3, 4.9),
                      yaw = random.angle();
         scene.node(grass).instances.push_back(
             {{x, -0.06, z}, turn({0.0, 1.0, 0.0}, yaw), glm::dvec3(random.range(0.45, 0.75))});
@@ -487,23 +487,23 @@ void add_sky(Assembly& scene) {
     sky.double_sided = true;
     MeshBuilder m;
     m.surface(
-        24, 16, [](double u, double v) { return glm::dvec3(glm::mix(-90.0, 130.0, u), -2.0 + 50.0 * v, -62.0); },
+        30, 24, [](double u, double v) { return glm::dvec3(glm::mix(-90.0, 130.0, u), -2.0 + 46.0 * v, -62.0); },
         [](double u, double v, glm::dvec3) {
-            const double cloud = fractal_noise({7.0 * u, 9.0 * v}, 4);
+            const double cloud = fractal_noise({16.0 * u, 30.0 * v}, 4);
             const double hills = fractal_noise({9.0 * u, 3.0}, 3);
             const glm::dvec3 clear =
-                glm::mix(glm::dvec3(0.82, 0.72, 0.56), glm::dvec3(0.20, 0.40, 0.68), glm::smoothstep(0.08, 0.5, v));
+                glm::mix(glm::dvec3(0.82, 0.72, 0.56), glm::dvec3(0.10, 0.27, 0.58), glm::smoothstep(0.06, 0.30, v));
             const glm::dvec3 above =
-                glm::mix(clear, glm::dvec3(0.95, 0.88, 0.78), 0.7 * glm::smoothstep(0.5, 0.75, cloud));
-            return glm::mix(glm::dvec3(0.20, 0.27, 0.26), above, glm::smoothstep(0.0, 0.03, v - 0.10 - 0.10 * hills));
+                glm::mix(clear, glm::dvec3(0.95, 0.88, 0.78), 0.8 * glm::smoothstep(0.5, 0.72, cloud));
+            return glm::mix(glm::dvec3(0.20, 0.27, 0.26), above, glm::smoothstep(0.0, 0.03, v - 0.055 - 0.07 * hills));
         });
     scene.add_node("sky", kNone, {}, scene.add_mesh("sky", m.take(scene.add(sky))));
 }
 
 void add_camera_and_light(Assembly& scene) {
-    const Index camera = scene.add_camera("panning", {}, {62.0, 0.95, 8.3, 0.5, 0});
+    const Index camera = scene.add_camera("panning", {}, {60.0, 0.95, 8.0, 0.5, 0});
     // The camera's car is a little slower, so the picture pans.
-    const auto eye = [](double t) { return glm::dvec3(kSpeed * t + 2.3 - 1.1 * (t - 1.0), 0.86, 8.0); };
+    const auto eye = [](double t) { return glm::dvec3(kSpeed * t + 3.3 - 1.1 * (t - 1.0), 0.80, 7.5); };
     const auto target = [](double t) { return glm::dvec3(kSpeed * t + 0.05 - 0.25 * (t - 1.0), 0.70, 0.0); };
     scene.animate_translation(camera, 13, eye);
     scene.animate_rotation(camera, 13, [=](double t) { return looking(eye(t), target(t)); });

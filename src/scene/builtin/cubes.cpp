@@ -30,7 +30,8 @@ struct Box {
     const char* name;
     Image image;
     double size;
-    glm::dvec3 at_one, velocity;  ///< place at t = 1 s, metres per second
+    glm::dvec3 centre, swing;  ///< it goes to and fro, and up and down twice as often
+    double pace, phase;        ///< radians per second, radians
     glm::dvec3 axis;
     double spin;  ///< radians per second
 };
@@ -42,8 +43,8 @@ void add_box(Assembly& cubes, Box box) {
     m.box(glm::dvec3(-0.5 * box.size), glm::dvec3(0.5 * box.size));
     const Index node = cubes.add_node(box.name, kNone, {}, cubes.add_mesh(box.name, m.take(cubes.add(material))));
     cubes.animate_translation(node, 25, [=](double t) {
-        const double s = t - 1.0, fall = 0.35 * s * s;
-        return box.at_one + box.velocity * s - glm::dvec3(0.0, fall, 0.0);
+        const double a = box.pace * t + box.phase;
+        return box.centre + box.swing * glm::dvec3(std::sin(a), std::sin(2.0 * a + 0.6), std::cos(a));
     });
     cubes.animate_rotation(node, 49, [=](double t) { return turn(box.axis, box.spin * t + 0.4); });
 }
@@ -67,29 +68,37 @@ Scene cubes() {
     add_box(cubes, {"red checker",
                     checker_texture("red checker", 128, 4, {0.55, 0.02, 0.02}, {0.85, 0.80, 0.70}),
                     0.19,
-                    {-0.16, 0.21, 0.02},
-                    {0.55, 0.15, 0.0},
+                    {-0.17, 0.20, 0.0},
+                    {0.09, 0.05, 0.05},
+                    4.4,
+                    0.3,
                     {0.7, 0.5, 0.3},
                     4.2});
     add_box(cubes, {"warning stripes",
                     stripe_texture("warning stripes", 128, 3, {0.02, 0.02, 0.02}, {0.88, 0.55, 0.02}),
                     0.14,
-                    {0.17, 0.17, 0.16},
-                    {-0.75, 0.3, 0.1},
+                    {0.17, 0.17, 0.13},
+                    {0.10, 0.06, 0.06},
+                    -5.2,
+                    1.0,
                     {-0.3, 0.6, 0.8},
                     -6.0});
     add_box(cubes, {"blue target",
                     target_texture("blue target", 128, 3, {0.02, 0.10, 0.42}, {0.75, 0.85, 0.9}),
                     0.26,
-                    {0.34, 0.24, -0.75},
-                    {-0.5, 0.1, 0.3},
+                    {0.32, 0.27, -0.70},
+                    {0.20, 0.06, 0.12},
+                    3.4,
+                    -0.6,
                     {0.2, 1.0, 0.4},
                     3.0});
     add_box(cubes, {"green checker",
                     checker_texture("green checker", 128, 2, {0.02, 0.22, 0.10}, {0.70, 0.80, 0.30}),
                     0.11,
-                    {-0.30, 0.33, -0.35},
-                    {0.9, -0.2, 0.2},
+                    {-0.10, 0.40, -0.45},
+                    {0.34, 0.05, 0.10},
+                    3.0,
+                    2.4,
                     {1.0, 0.3, -0.2},
                     7.0});
     return cubes.take({0.16f, 0.23f, 0.32f});

@@ -129,9 +129,9 @@ DragonflyParts make_dragonfly(Assembly& pond) {
     chitin.metallic = 0.25f;
     Material eye = painted("dragonfly eye", 0.12);
     const Index chitin_index = pond.add(chitin), eye_index = pond.add(eye);
-    Material membrane = painted("dragonfly wing", 0.15);
+    Material membrane = painted("dragonfly wing", 0.4);
     membrane.base_color_texture =
-        texture(pond.add(wing_texture("dragonfly wing", {0.70, 0.80, 0.78}, {0.05, 0.03, 0.015}, 0.20)));
+        texture(pond.add(wing_texture("dragonfly wing", {0.70, 0.80, 0.78}, {0.05, 0.03, 0.015}, 0.26)));
     membrane.base_color_texture.wrap_s = membrane.base_color_texture.wrap_t = Wrap::kClampToEdge;
     membrane.alpha_mode = AlphaMode::kBlend;
     membrane.double_sided = true;
@@ -159,7 +159,7 @@ void add_dragonfly(Assembly& pond, const DragonflyParts& parts, Index parent, do
             const Index node = pond.add_node(name, parent, hinge, pair == 0 ? parts.fore : parts.hind);
             pond.animate_rotation(node, 1 + static_cast<int>(12.0 * beats * kDuration), [=](double t) {
                 const double a = kTwoPi * beats * t + phase + 2.4 * pair;
-                const double stroke = degrees(14.0) + degrees(30.0) * std::sin(a), twist = degrees(14.0) * std::cos(a);
+                const double stroke = degrees(6.0) + degrees(27.0) * std::sin(a), twist = degrees(14.0) * std::cos(a);
                 const double sweep = degrees(pair == 0 ? 9.0 : -12.0);
                 return turn({0.0, 0.0, 1.0}, side * stroke) * turn({0.0, 1.0, 0.0}, -side * sweep) *
                        turn({1.0, 0.0, 0.0}, twist);
@@ -173,12 +173,12 @@ void add_dragonflies(Assembly& pond) {
         return glm::dvec3(0.012 + 0.007 * (t - 1.0) + 0.003 * std::sin(3.1 * t),
                           0.058 + 0.004 * std::sin(2.3 * t + 1.0), 0.002 * std::sin(1.7 * t));
     };
-    const Index hero = pond.add_node("dragonfly", kNone, {hover(0.0), {1.0, 0.0, 0.0, 0.0}, glm::dvec3(0.0015)});
+    const Index hero = pond.add_node("dragonfly", kNone, {hover(0.0), {1.0, 0.0, 0.0, 0.0}, glm::dvec3(0.0014)});
     pond.animate_translation(hero, 25, hover);
     pond.animate_rotation(hero, 25, [](double t) {
-        return turn({0.0, 1.0, 0.0}, degrees(58.0 + 3.0 * std::sin(1.9 * t))) *
-               turn({1.0, 0.0, 0.0}, degrees(-9.0 + 3.0 * std::sin(2.3 * t))) *
-               turn({0.0, 0.0, 1.0}, degrees(44.0 + 3.0 * std::sin(2.9 * t)));
+        return turn({0.0, 1.0, 0.0}, degrees(44.0 + 3.0 * std::sin(1.9 * t))) *
+               turn({1.0, 0.0, 0.0}, degrees(33.0 + 3.0 * std::sin(2.3 * t))) *
+               turn({0.0, 0.0, 1.0}, degrees(22.0 + 3.0 * std::sin(2.9 * t)));
     });
     add_dragonfly(pond, parts, hero, 4.0, 1.0);
 
@@ -226,7 +226,7 @@ void add_water_lilies(Assembly& pond) {
         [](double u, double v) {
             const double a = degrees(12.0) + degrees(336.0) * u;
             const double wave = 0.035 * std::sin(5.0 * a) * v * v;
-            return glm::dvec3(v * std::sin(a), wave + 0.05 * std::pow(v, 8.0) + 0.01 * (1.0 - v), v * std::cos(a));
+            return glm::dvec3(-v * std::sin(a), wave + 0.05 * std::pow(v, 8.0) + 0.01 * (1.0 - v), v * std::cos(a));
         },
         [](double u, double v, glm::dvec3) {
             const double vein = std::pow(0.5 + 0.5 * std::cos(kTwoPi * 14.0 * u), 8.0) * (1.0 - 0.5 * v);
@@ -350,14 +350,14 @@ void add_far_bank(Assembly& pond) {
     Random random(37);
     Material glint = painted("glitter");
     glint.base_color = {0.0f, 0.0f, 0.0f, 1.0f};
-    glint.emissive = {26.0f, 21.0f, 13.0f};
+    glint.emissive = {8.0f, 6.2f, 3.4f};
     MeshBuilder s;
     s.ellipsoid(glm::dvec3(0.0), glm::dvec3(1.0), 6, 4);
     const Index mesh = pond.add_mesh("glitter", s.take(pond.add(glint)));
     for (int k = 0; k < 60; ++k) {
-        const double depth = 0.5 + 2.8 * std::pow(random.uniform(), 1.3);
+        const double depth = 0.42 + 1.3 * std::pow(random.uniform(), 1.5);
         const double x = random.around(-0.12 * depth, 0.22 * depth);
-        const double size = 0.00062 * std::sqrt(depth) * random.range(0.6, 1.3);
+        const double size = 0.0042 * (depth - kFocus) * random.range(0.5, 1.1);
         const Index node =
             pond.add_node("glitter", kNone, {{x, 0.006, 0.22 - depth}, {1.0, 0.0, 0.0, 0.0}, glm::dvec3(size)}, mesh);
         const double phase = random.angle(), rate = random.range(4.0, 8.0);

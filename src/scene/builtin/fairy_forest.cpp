@@ -90,7 +90,7 @@ void add_evening_sky(Assembly& forest) {
         },
         [](double u, double v, glm::dvec3) {
             const glm::dvec3 high{0.012, 0.030, 0.075}, middle{0.035, 0.100, 0.120}, low{0.16, 0.15, 0.09},
-                halo{0.50, 0.30, 0.12}, glow{1.0, 0.78, 0.42};
+                halo{0.46, 0.21, 0.07}, glow{1.0, 0.60, 0.20};
             const glm::dvec3 base =
                 glm::mix(glm::mix(low, middle, glm::smoothstep(0.1, 0.3, v)), high, glm::smoothstep(0.25, 0.6, v));
             const auto spot = [&](double radius_u, double radius_v) {
@@ -328,11 +328,11 @@ void add_mushrooms(Assembly& forest) {
 
     // Small ones that glow blue at the foot of the left trunk and light the moss around them.
     Material glowing = painted("glowing mushroom", 0.5);
-    glowing.emissive = {0.012f, 0.10f, 0.14f};
+    glowing.emissive = {0.010f, 0.13f, 0.19f};
     const Index glow = forest.add(glowing);
     MushroomStyle lamp;
-    lamp.cap = {0.25, 0.6, 0.7};
-    lamp.stem = {0.35, 0.55, 0.6};
+    lamp.cap = {0.06, 0.30, 0.42};
+    lamp.stem = {0.16, 0.32, 0.38};
     lamp.gills = {0.5, 0.9, 1.0};
     lamp.height = 0.035;
     lamp.cap_radius = 0.011;
@@ -349,15 +349,15 @@ void add_mushrooms(Assembly& forest) {
         forest.add_node("glowing mushroom", kNone,
                         placed(on_ground(foot.x, foot.y), random.angle(), random.range(0.8, 1.5)), mesh);
     forest.add_point_light("blue glow left", kNone, on_ground(-0.385, -0.05) + glm::dvec3(0.0, 0.06, 0.04),
-                           {0.2f, 0.75f, 1.0f}, 0.012);
+                           {0.2f, 0.75f, 1.0f}, 0.008);
     forest.add_point_light("blue glow middle", kNone, on_ground(0.06, -0.01) + glm::dvec3(0.0, 0.05, 0.03),
-                           {0.2f, 0.75f, 1.0f}, 0.006);
+                           {0.2f, 0.75f, 1.0f}, 0.004);
 }
 
 /// Fireflies hover in the wood behind: bright points that the lens turns into disks.
 void add_fireflies(Assembly& forest) {
     Random random(53);
-    const glm::vec3 colors[] = {{30.0f, 17.0f, 5.0f}, {24.0f, 22.0f, 7.0f}, {9.0f, 24.0f, 20.0f}};
+    const glm::vec3 colors[] = {{9.0f, 4.6f, 1.1f}, {7.0f, 5.6f, 1.5f}, {1.6f, 5.5f, 4.6f}};
     std::vector<Index> meshes;
     for (const glm::vec3& color : colors) {
         Material light = painted("firefly");
@@ -373,9 +373,9 @@ void add_fireflies(Assembly& forest) {
                             0.05 + 0.33 * depth * std::pow(random.uniform(), 1.3) + 0.03 * depth, 0.62 - depth};
         const glm::dvec3 swing = 0.05 * random.direction();
         const double phase = random.angle();
-        const Index node =
-            forest.add_node("firefly", kNone, placed(at, 0.0, 0.0019 * random.range(0.7, 1.3) * std::sqrt(depth)),
-                            meshes[std::size_t(k % 5 == 4 ? 2 : k % 2)]);
+        const Index node = forest.add_node(
+            "firefly", kNone, placed(at, 0.0, (0.0012 + 0.0048 * (depth - kFocus)) * random.range(0.75, 1.2)),
+            meshes[std::size_t(k % 5 == 4 ? 2 : k % 2)]);
         forest.animate_translation(node, 9, [=](double t) {
             return at + swing * std::sin(1.9 * t + phase) +
                    glm::dvec3(0.0, 0.02 * std::sin(2.7 * t + 2.0 * phase), 0.0);
@@ -474,7 +474,7 @@ void add_camera_and_light(Assembly& forest) {
 
     forest.add_sun("evening sun", {0.75, 0.42, -0.22}, {1.0f, 0.66f, 0.36f}, 6.5);
     forest.add_sun("sky", {-0.25, 1.0, 0.35}, {0.45f, 0.65f, 1.0f}, 1.1);
-    forest.add_sun("fill", {-0.6, 0.25, 1.0}, {1.0f, 0.78f, 0.62f}, 0.8);
+    forest.add_sun("fill", {-0.6, 0.25, 1.0}, {1.0f, 0.80f, 0.66f}, 1.1);
 }
 
 }  // namespace

@@ -180,7 +180,7 @@ void add_hand(Assembly& scene) {
 
     const Index skin_material = scene.add(painted("skin", 0.48));
     const Index nail_material = scene.add(painted("nail", 0.25));
-    Primitive body = ImplicitBody(limbs(), 0.75).polygonize(0.41, skin_material, true);
+    Primitive body = ImplicitBody(limbs(), 0.75).polygonize(0.418, skin_material, true);
     add_creases(body);
     std::vector<Primitive> parts;
     parts.push_back(std::move(body));
@@ -208,7 +208,7 @@ void add_hand(Assembly& scene) {
 void add_city_lights(Assembly& scene) {
     Random random(5);
     const glm::vec3 colors[] = {
-        {22.0f, 11.0f, 3.5f}, {20.0f, 15.0f, 9.0f}, {18.0f, 2.2f, 1.2f}, {3.0f, 9.0f, 20.0f}, {2.5f, 14.0f, 9.0f}};
+        {6.0f, 2.8f, 0.7f}, {5.0f, 3.6f, 2.0f}, {5.5f, 0.5f, 0.25f}, {0.7f, 2.2f, 5.5f}, {0.5f, 3.6f, 2.2f}};
     std::vector<Index> meshes;
     for (const glm::vec3& color : colors) {
         Material light = painted("city light");
@@ -223,10 +223,29 @@ void add_city_lights(Assembly& scene) {
         // Dense along a street near the horizon, sparse above it.
         const double height = k < 60 ? random.around(-0.09, 0.10) : random.range(-0.05, 0.36);
         const glm::dvec3 at{random.around(0.0, 0.58 * depth), height * depth, 0.5 - depth};
-        Transform placed{at, {1.0, 0.0, 0.0, 0.0}, glm::dvec3(0.0016 * depth * random.range(0.7, 1.25))};
+        Transform placed{at, {1.0, 0.0, 0.0, 0.0}, glm::dvec3(0.0046 * (depth - 0.5) * random.range(0.7, 1.2))};
         const int color = k < 60 ? random.below(5) : random.below(2);
         scene.add_node("city light", kNone, placed, meshes[std::size_t(color)]);
     }
+}
+
+/// Dusk over the roofs: a wall of colour far behind.
+void add_dusk(Assembly& scene) {
+    Material sky;
+    sky.name = "dusk";
+    sky.unlit = true;
+    sky.double_sided = true;
+    MeshBuilder m;
+    m.surface(
+        12, 20, [](double u, double v) { return glm::dvec3(-9.0 + 18.0 * u, -4.5 + 9.0 * v, -8.0); },
+        [](double u, double v, glm::dvec3) {
+            const glm::dvec3 street{0.020, 0.016, 0.024}, glow{0.20, 0.065, 0.045}, violet{0.045, 0.028, 0.085},
+                night{0.006, 0.012, 0.034};
+            const glm::dvec3 above = glm::mix(violet, night, glm::smoothstep(0.52, 0.78, v));
+            const glm::dvec3 horizon = glm::mix(glow * (0.55 + 0.6 * u), above, glm::smoothstep(0.42, 0.60, v));
+            return glm::mix(street, horizon, glm::smoothstep(0.30, 0.43, v));
+        });
+    scene.add_node("dusk", kNone, {}, scene.add_mesh("dusk", m.take(scene.add(sky))));
 }
 
 void add_camera_and_light(Assembly& scene) {
@@ -246,6 +265,7 @@ Scene hand() {
     Assembly scene("builtin:hand", kDuration);
     add_camera_and_light(scene);
     add_hand(scene);
+    add_dusk(scene);
     add_city_lights(scene);
     return scene.take({0.008f, 0.013f, 0.030f});
 }

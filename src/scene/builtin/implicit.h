@@ -4,9 +4,8 @@
 // "Constrained Elastic Surface Nets", in the form of one vertex for each cell at the mean of its edges' crossings),
 // here with the vertices moved onto the surface by Newton steps instead of relaxation.
 
-#include <pentaprism/scene.h>
-
 #include <glm/vec3.hpp>
+#include <pentaprism/scene.h>
 #include <vector>
 
 namespace pentaprism::builtin {

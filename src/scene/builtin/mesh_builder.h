@@ -2,10 +2,9 @@
 // Appends shapes to one triangle mesh. Nearly every shape is a parametric surface p(u, v), tessellated on a grid, with
 // normals from its derivatives; its front is the side of dp/du x dp/dv.
 
-#include <pentaprism/scene.h>
-
 #include <functional>
 #include <glm/mat4x4.hpp>
+#include <pentaprism/scene.h>
 #include <vector>
 
 namespace pentaprism::builtin {

@@ -83,32 +83,33 @@ Image bark_texture() {
 }
 
 Image litter_texture() {
-    constexpr int kFlecks = 260;
-    struct Fleck {
-        glm::dvec2 centre, along;
-        double width, shade;
-    };
+    constexpr int kSize = 256, kFlecks = 420;
+    // Flecks, drawn one over the other; the picture repeats, so what leaves it on one side comes back on the other.
+    std::vector<double> fleck_shade(std::size_t(kSize) * kSize, -1.0);
     Random random(3);
-    std::vector<Fleck> flecks;
     for (int i = 0; i < kFlecks; ++i) {
         const double x = random.uniform(), y = random.uniform(), a = random.angle(), length = random.range(0.01, 0.035);
-        flecks.push_back(
-            {{x, y}, {std::cos(a) * length, std::sin(a) * length}, random.range(0.25, 0.6), random.range(0.35, 1.0)});
+        const glm::dvec2 along{std::cos(a) / length, std::sin(a) / length};
+        const double width = random.range(0.25, 0.6), shade = random.range(0.35, 1.0);
+        const int reach = static_cast<int>(std::ceil(length * kSize)), cx = static_cast<int>(x * kSize),
+                  cy = static_cast<int>(y * kSize);
+        for (int py = cy - reach; py <= cy + reach; ++py)
+            for (int px = cx - reach; px <= cx + reach; ++px) {
+                const glm::dvec2 d{(px + 0.5) / kSize - x, (py + 0.5) / kSize - y};
+                const double s = glm::dot(d, along), t = d.x * along.y - d.y * along.x;
+                const int texel = (py & (kSize - 1)) * kSize + (px & (kSize - 1));
+                if (std::abs(t) < width * (1.0 - s * s))
+                    fleck_shade[std::size_t(texel)] = shade * (0.9 + 0.2 * std::abs(t));
+            }
     }
-    return paint("litter", 256, 256, [&](double u, double v) {
+    return paint("litter", kSize, kSize, [&](double u, double v) {
         const auto crumbs = [](double x, double y) { return fractal_noise({24.0 * x, 24.0 * y}, 4); };
         const double a = glm::mix(crumbs(u, v), crumbs(u - 1.0, v), u);
         const double b = glm::mix(crumbs(u, v - 1.0), crumbs(u - 1.0, v - 1.0), u);
-        double shade = 0.35 + 0.55 * glm::smoothstep(0.3, 0.7, glm::mix(a, b, v));
-        for (const Fleck& fleck : flecks) {  // the last one lies on top
-            const glm::dvec2 d = glm::dvec2(u, v) - fleck.centre;
-            const glm::dvec2 nearest = d - glm::round(d);
-            const double size = glm::dot(fleck.along, fleck.along);
-            const double s = glm::dot(nearest, fleck.along) / size;
-            const double t = (nearest.x * fleck.along.y - nearest.y * fleck.along.x) / size;
-            if (std::abs(t) < fleck.width * (1.0 - s * s)) shade = fleck.shade * (0.9 + 0.2 * std::abs(t));
-        }
-        return glm::dvec4(glm::dvec3(shade), 1.0);
+        const double crumb = 0.35 + 0.55 * glm::smoothstep(0.3, 0.7, glm::mix(a, b, v));
+        const double fleck =
+            fleck_shade[std::size_t(static_cast<int>(v * kSize) * kSize + static_cast<int>(u * kSize))];
+        return glm::dvec4(glm::dvec3(fleck < 0.0 ? crumb : fleck), 1.0);
     });
 }
 
