@@ -39,10 +39,8 @@ using I = hn::RebindToSigned<F>;
 using U = hn::RebindToUnsigned<F>;
 constexpr float kUnitRoundoff = 1.0f / 16777216.0f;
 
-// One vector of samples: a block of the cell and a slot of it.
-struct Job {
-    std::uint16_t block, slot;
-};
+// One vector of samples: its place in SampleTable::cell() and in Hits.
+using Job = std::uint32_t;
 
 // The tile's state that lives longer than a triangle.
 struct TileState {
@@ -56,12 +54,11 @@ struct TileState {
     std::span<const SampleTable::Stratum> strata;
     std::span<const Domain> domains;
     std::uint64_t tile_blocks = 0;                       // blocks of the cell that belong to the tile
-    std::vector<const SampleVector*> block_samples;  // [block]
-    std::vector<float> farthest;                     // [block][slot]: largest depth stored so far
+    const SampleVector* samples = nullptr;           // of the cell, by job
+    std::vector<float> farthest;                     // by job: largest depth stored so far
     std::vector<Job> jobs, survivors;
     float tile_farthest = INFINITY;                  // no smaller than any of `farthest`
     // Domains of the strata, structure of arrays, padded to whole vectors with empty ones.
-    float block_x[kBlocksPerCell], block_y[kBlocksPerCell];  // top left corner of each block, from the cell's middle, y up
     HWY_ALIGN float u0[64], u1[64], v0[64], v1[64], t0[64], t1[64];
     int stratum_count = 0;
 };
@@ -79,10 +76,9 @@ struct Kind {
 };
 
 template <class K>
-HWY_INLINE Deltas deltas(F f, const LocalTriangle& T, const SampleVector& s, int lane, float block_x, float block_y) {
+HWY_INLINE Deltas deltas(F f, const LocalTriangle& T, const SampleVector& s, int lane) {
     Deltas D;
-    const Vec hx = hn::Add(hn::Load(f, s.x + lane), hn::Set(f, block_x));
-    const Vec hy = hn::Add(hn::Load(f, s.y + lane), hn::Set(f, block_y));
+    const Vec hx = hn::Load(f, s.x + lane), hy = hn::Load(f, s.y + lane);
     Vec tau = hn::Zero(f);
     if constexpr (K::kMotion) tau = hn::MulAdd(hn::Load(f, s.t + lane), hn::Set(f, T.segments), hn::Set(f, -T.segment));
     D.tau = tau;
@@ -149,10 +145,10 @@ std::size_t find_survivors(TileState& state, const LocalTriangle& T, std::size_t
     std::size_t count = 0;
     for (std::size_t j = 0; j < job_count; ++j) {
         const Job job = state.jobs[j];
-        const SampleVector& s = state.block_samples[job.block][job.slot];
+        const SampleVector& s = state.samples[job];
         bool any = false;
         for (int lane = 0; lane < kLanes; lane += static_cast<int>(hn::Lanes(f))) {
-            const Deltas D = deltas<K>(f, T, s, lane, state.block_x[job.block], state.block_y[job.block]);
+            const Deltas D = deltas<K>(f, T, s, lane);
             any |= !hn::AllFalse(f, in_segment<K>(f, D, not_outside<K>(f, edges(D))));
         }
         survivors[count] = job;
@@ -167,8 +163,8 @@ HWY_INLINE Mask straddles_zero(F f, const Vec v[3]) {
 }
 
 // What the scalar test says of the lanes in `tied`; returns those it accepts, with their depth.
-HWY_NOINLINE Mask decide_ties(F f, const TileState& state, const LocalTriangle& T, const SampleVector& s, int lane, int block,
-                              Mask tied, Vec& depth) {
+HWY_NOINLINE Mask decide_ties(F f, const TileState& state, const LocalTriangle& T, const SampleVector& s, int lane, Mask tied,
+                              Vec& depth) {
     HWY_ALIGN std::int32_t ask[kLanes];
     HWY_ALIGN float depths[kLanes];
     const I i;
@@ -176,7 +172,7 @@ HWY_NOINLINE Mask decide_ties(F f, const TileState& state, const LocalTriangle& 
     hn::Store(depth, f, depths);
     for (std::size_t k = 0; k < hn::Lanes(f); ++k) {
         if (ask[k] == 0) continue;
-        const LocalSample sample{s.x[lane + k] + block_x(block), s.y[lane + k] + block_y(block), s.u[lane + k], s.v[lane + k], s.t[lane + k]};
+        const LocalSample sample{s.x[lane + k], s.y[lane + k], s.u[lane + k], s.v[lane + k], s.t[lane + k]};
         const SampleHit hit = cover_sample(T, sample, state.centre);
         ask[k] = hit.hit ? -1 : 0;
         if (hit.hit) depths[k] = hit.depth;
@@ -186,14 +182,15 @@ HWY_NOINLINE Mask decide_ties(F f, const TileState& state, const LocalTriangle& 
 }
 
 // The lanes whose surface is really there: alpha masks and stochastic transparency.
-HWY_NOINLINE Mask decide_opacity(F f, const TileState& state, const LocalTriangle& T, const Edges& E, Vec sum, int lane, int block,
-                                 int slot, Mask hit) {
+HWY_NOINLINE Mask decide_opacity(F f, const TileState& state, const LocalTriangle& T, const Edges& E, Vec sum, int lane, Job job,
+                                 Mask hit) {
     HWY_ALIGN std::int32_t ask[kLanes];
     HWY_ALIGN float b[3][kLanes];
     const I i;
     hn::Store(hn::VecFromMask(i, hn::RebindMask(i, hit)), i, ask);
     for (int k = 0; k < 3; ++k) hn::Store(hn::Div(E.e[k], sum), f, b[k]);
     const Tile& tile = state.work.tile;
+    const int slots = state.work.samples.slots(), block = static_cast<int>(job) / slots, slot = static_cast<int>(job) % slots;
     const int bx = tile.cell_x() * kCellBlocks + block % kCellBlocks, by = tile.cell_y() * kCellBlocks + block / kCellBlocks;
     const auto indices = state.work.samples.indices(bx, by);
     for (int k = 0; k < static_cast<int>(hn::Lanes(f)); ++k) {
@@ -208,9 +205,9 @@ HWY_NOINLINE Mask decide_opacity(F f, const TileState& state, const LocalTriangl
 }
 
 // Lanes within the screen bounds of a triangle that reaches the camera plane.
-HWY_INLINE Mask in_box(F f, const TileState& state, const LocalTriangle& T, const SampleVector& s, int lane, int block) {
-    const Vec gx = hn::Add(hn::Set(f, state.centre.x), hn::Add(hn::Load(f, s.x + lane), hn::Set(f, state.block_x[block])));
-    const Vec gy = hn::Add(hn::Set(f, state.centre.y), hn::Add(hn::Load(f, s.y + lane), hn::Set(f, state.block_y[block])));
+HWY_INLINE Mask in_box(F f, const TileState& state, const LocalTriangle& T, const SampleVector& s, int lane) {
+    const Vec gx = hn::Add(hn::Set(f, state.centre.x), hn::Load(f, s.x + lane));
+    const Vec gy = hn::Add(hn::Set(f, state.centre.y), hn::Load(f, s.y + lane));
     return hn::And(hn::And(hn::Ge(gx, hn::Set(f, T.box[0])), hn::Le(gx, hn::Set(f, T.box[1]))),
                    hn::And(hn::Ge(gy, hn::Set(f, T.box[2])), hn::Le(gy, hn::Set(f, T.box[3]))));
 }
@@ -220,42 +217,40 @@ template <class K>
 void write_hits(TileState& state, const LocalTriangle& T, std::size_t count) {
     const F f;
     const U u;
-    const std::size_t slots = static_cast<std::size_t>(state.work.samples.slots());
     const Vec zero = hn::Zero(f);
     std::int64_t covered = 0;
     for (std::size_t j = 0; j < count; ++j) {
         const Job job = state.survivors[j];
-        const std::size_t vector = job.block * slots + job.slot;
-        const SampleVector& s = state.block_samples[job.block][job.slot];
-        float* depths = &state.hits.depth[vector * kLanes];
-        std::uint32_t* triangles = &state.hits.triangle[vector * kLanes];
+        const SampleVector& s = state.samples[job];
+        float* depths = &state.hits.depth[std::size_t{job} * kLanes];
+        std::uint32_t* triangles = &state.hits.triangle[std::size_t{job} * kLanes];
         Vec farthest = zero;
         for (int lane = 0; lane < kLanes; lane += static_cast<int>(hn::Lanes(f))) {
-            const Deltas D = deltas<K>(f, T, s, lane, state.block_x[job.block], state.block_y[job.block]);
+            const Deltas D = deltas<K>(f, T, s, lane);
             const Edges E = edges(D);
             const Mask candidates = in_segment<K>(f, D, not_outside<K>(f, E)), inside = strictly_inside<K>(f, E);
             Mask hit = hn::And(hn::And(candidates, inside), hn::And(straddles_zero(f, D.x), straddles_zero(f, D.y)));
-            if (T.behind) hit = hn::And(hit, in_box(f, state, T, s, lane, job.block));
+            if (T.behind) hit = hn::And(hit, in_box(f, state, T, s, lane));
             const Vec sum = hn::Add(hn::Add(E.e[0], E.e[1]), E.e[2]);
             Vec depth = hn::Add(hn::Add(hn::Mul(E.e[0], D.z[0]), hn::Mul(E.e[1], D.z[1])), hn::Mul(E.e[2], D.z[2]));
             depth = hn::Div(depth, sum);
             depth = hn::Min(hn::Max(depth, hn::Min(hn::Min(D.z[0], D.z[1]), D.z[2])), hn::Max(hn::Max(D.z[0], D.z[1]), D.z[2]));
             hit = hn::And(hit, hn::And(hn::Ne(sum, zero), hn::And(hn::Ge(depth, hn::Set(f, T.z_near)), hn::Le(depth, hn::Set(f, T.z_far)))));
             const Mask tied = hn::AndNot(inside, candidates);
-            if (HWY_UNLIKELY(!hn::AllFalse(f, tied))) hit = hn::Or(hit, decide_ties(f, state, T, s, lane, job.block, tied, depth));
+            if (HWY_UNLIKELY(!hn::AllFalse(f, tied))) hit = hn::Or(hit, decide_ties(f, state, T, s, lane, tied, depth));
             covered += static_cast<std::int64_t>(hn::CountTrue(f, hit));
             // Hits are ordinary vectors: not aligned.
             const Vec stored = hn::LoadU(f, depths + lane);
             const auto stored_triangle = hn::LoadU(u, triangles + lane), triangle = hn::Set(u, T.triangle);
             const Mask lower = hn::RebindMask(f, hn::Lt(hn::BitCast(I(), triangle), hn::BitCast(I(), stored_triangle)));
             hit = hn::And(hit, hn::Or(hn::Lt(depth, stored), hn::And(hn::Eq(depth, stored), lower)));
-            if (T.alpha_tested && !hn::AllFalse(f, hit)) hit = decide_opacity(f, state, T, E, sum, lane, job.block, job.slot, hit);
+            if (T.alpha_tested && !hn::AllFalse(f, hit)) hit = decide_opacity(f, state, T, E, sum, lane, job, hit);
             const Vec nearest = hn::IfThenElse(hit, depth, stored);
             hn::StoreU(nearest, f, depths + lane);
             hn::StoreU(hn::IfThenElse(hn::RebindMask(u, hit), triangle, stored_triangle), u, triangles + lane);
             farthest = hn::Max(farthest, nearest);
         }
-        state.farthest[vector] = hn::GetLane(hn::MaxOfLanes(f, farthest));
+        state.farthest[job] = hn::GetLane(hn::MaxOfLanes(f, farthest));
     }
     state.counts.covered += covered;
 }
@@ -349,7 +344,7 @@ std::uint64_t blocks_at_camera_plane(const LocalTriangle& T, const CullTest& tes
 // Step 2: the (block, slot) pairs that may hit and are not hidden. How many bits a mask has is unpredictable, so bits are
 // written out eight at a time, wanted or not; what is hidden is dropped in a second pass without branches.
 HWY_NOINLINE std::size_t list_jobs(TileState& state, const std::uint64_t* masks, std::uint64_t blocks, float nearest) {
-    const std::size_t slots = static_cast<std::size_t>(state.work.samples.slots());
+    const Job slots = static_cast<Job>(state.work.samples.slots());
     Job* HWY_RESTRICT jobs = state.jobs.data();
     std::size_t listed = 0;
     for (const SampleTable::Stratum& s : state.strata) {
@@ -357,7 +352,7 @@ HWY_NOINLINE std::size_t list_jobs(TileState& state, const std::uint64_t* masks,
         if (m == 0) continue;
         const std::size_t end = listed + static_cast<std::size_t>(std::popcount(m));
         do {
-            for (int k = 0; k < 8; ++k, m &= m - 1) jobs[listed + k] = {static_cast<std::uint16_t>(std::countr_zero(m)), s.slot};
+            for (int k = 0; k < 8; ++k, m &= m - 1) jobs[listed + k] = static_cast<Job>(std::countr_zero(m)) * slots + s.slot;
             listed += 8;
         } while (m != 0);
         listed = end;
@@ -367,7 +362,7 @@ HWY_NOINLINE std::size_t list_jobs(TileState& state, const std::uint64_t* masks,
     for (std::size_t j = 0; j < listed; ++j) {
         const Job job = jobs[j];
         jobs[count] = job;
-        count += nearest <= farthest[job.block * slots + job.slot];
+        count += nearest <= farthest[job];
     }
     return count;
 }
@@ -464,12 +459,7 @@ void cover_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
     }
     state.tile_blocks = block_mask((work.tile.x0 - left) / kBlockSize, (work.tile.x1 - 1 - left) / kBlockSize,
                                    (work.tile.y0 - top) / kBlockSize, (work.tile.y1 - 1 - top) / kBlockSize);
-    state.block_samples.resize(kBlocksPerCell);
-    for (int b = 0; b < kBlocksPerCell; ++b) {
-        state.block_x[b] = block_x(b);
-        state.block_y[b] = block_y(b);
-        state.block_samples[b] = work.samples.block(left / kBlockSize + b % kCellBlocks, top / kBlockSize + b / kCellBlocks).data();
-    }
+    state.samples = work.samples.cell(work.tile.cell_x(), work.tile.cell_y()).data();
     state.farthest.assign(static_cast<std::size_t>(kBlocksPerCell) * slots, INFINITY);
     state.jobs.resize(static_cast<std::size_t>(kBlocksPerCell) * slots + 8);  // list_jobs writes up to 7 beyond
     state.survivors.resize(state.jobs.size());

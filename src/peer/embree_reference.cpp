@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "bound/local_triangle.h"
 #include "frame/opacity.h"
 #include "peer/brute_force.h"
 
@@ -201,7 +202,7 @@ class EmbreeReference::Impl {
 
     void trace_block(const Tile& tile, int bx, int by, Hits& hits) const {
         const View& view = frame_.view;
-        const double left = bx * kBlockSize - 0.5 * view.width, top = 0.5 * view.height - by * kBlockSize;
+        const CellCentre centre = cell_centre(view, bx / kCellBlocks, by / kCellBlocks);
         const float depth_near = static_cast<float>(view.depth_near), depth_far = static_cast<float>(view.depth_far);
         alignas(64) int valid[kLanes];
         alignas(64) RTCRayHit16 packet;
@@ -224,7 +225,7 @@ class EmbreeReference::Impl {
             context.vector = &samples;
             context.indices = &indices[slot * kLanes];
             for (int lane = 0; lane < kLanes; ++lane) {
-                aim(packet.ray, lane, left + samples.x[lane], top + samples.y[lane], samples.u[lane], samples.v[lane]);
+                aim(packet.ray, lane, centre.x + samples.x[lane], centre.y + samples.y[lane], samples.u[lane], samples.v[lane]);
                 packet.ray.tnear[lane] = depth_near;
                 packet.ray.tfar[lane] = depth_far;
                 packet.ray.time[lane] = samples.t[lane];
@@ -284,11 +285,12 @@ class EmbreeReference::Impl {
     PlacedSample placed(const Context& context, unsigned id) const {
         const int lane = static_cast<int>(id);
         const SampleVector& v = *context.vector;
-        const int column = lane % kBlockSize, row = lane / kBlockSize;
-        // From the block's corner, y up, to the pixel's corner, y down: exact on the lattice of 1/256.
-        const SamplePoint point{v.x[lane] - column, -v.y[lane] - row, v.u[lane], v.v[lane], v.t[lane]};
-        return place_sample(frame_.view, point, context.bx * kBlockSize + column, context.by * kBlockSize + row,
-                            context.indices[lane], table_.spp());
+        const int px = context.bx * kBlockSize + lane % kBlockSize, py = context.by * kBlockSize + lane / kBlockSize;
+        // From the cell's middle, y up, to the pixel's corner, y down: exact on the lattice of 1/256.
+        constexpr int half = kCellSize / 2;
+        const SamplePoint point{v.x[lane] + static_cast<float>(half - px % kCellSize),
+                                static_cast<float>(half - py % kCellSize) - v.y[lane], v.u[lane], v.v[lane], v.t[lane]};
+        return place_sample(frame_.view, point, px, py, context.indices[lane], table_.spp());
     }
 
     void release() {

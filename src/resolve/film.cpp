@@ -61,9 +61,8 @@ struct Offsets {
 };
 
 Offsets offsets(const SampleVector& vector, int lane) {
-    const float column = static_cast<float>(lane % kBlockSize), row = static_cast<float>(lane / kBlockSize);
-    return {static_cast<int>((vector.x[lane] - column) * 256.0f) & 255,
-            static_cast<int>((-vector.y[lane] - row) * 256.0f) & 255};
+    // Pixels lie at whole numbers from the middle of their cell.
+    return {static_cast<int>(vector.x[lane] * 256.0f) & 255, static_cast<int>(-vector.y[lane] * 256.0f) & 255};
 }
 
 std::size_t hit_index(int bx, int by, int slot, int lane, int slots) {

@@ -82,6 +82,16 @@ SamplePoint to_sample(const RawSample& raw, int spp, const Lens& lens) {
     return sample;
 }
 
+// Top left corner of a pixel, from the middle of its cell, y up.
+struct LocalOffset {
+    float x, y;
+};
+LocalOffset local_offset(int block, int lane) {
+    constexpr int half = kCellSize / 2;
+    return {static_cast<float>(block % kCellBlocks * kBlockSize + lane % kBlockSize - half),
+            static_cast<float>(half - block / kCellBlocks * kBlockSize - lane / kBlockSize)};
+}
+
 // Slot of each index in lens order: groups of sixteen consecutive indices hold each of the 4x4 lens cells once, so a whole group
 // is laid out by cell; the remainder of spp / 16 in ascending order of its cells.
 std::vector<std::uint16_t> lens_order(const BlockPattern& pattern, int spp) {
@@ -136,8 +146,8 @@ void extend(Domain& domain, const Domain& other) {
 
 SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping grouping)
     : spp_(spp), period_(period_for(spp)), seed_(seed), grouping_(grouping) {
-    const int side = period_ / kBlockSize;
-    const std::size_t blocks = static_cast<std::size_t>(side) * side;
+    const int cells = period_ / kCellSize;
+    const std::size_t blocks = static_cast<std::size_t>(cells) * cells * kBlocksPerCell;
     vectors_.resize(blocks * spp);
     indices_.resize(blocks * spp * kLanes);
     slots_.resize(blocks * spp * kLanes);
@@ -145,7 +155,9 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
     std::vector<std::array<Domain, kMaxStrata>> domains(blocks);
 
     parallel_for(blocks, [&](std::size_t b) {
-        const BlockPattern pattern(spp, seed, static_cast<int>(b) % side, static_cast<int>(b) / side);
+        const int cell = static_cast<int>(b) / kBlocksPerCell, in_cell = static_cast<int>(b) % kBlocksPerCell;
+        const BlockPattern pattern(spp, seed, cell % cells * kCellBlocks + in_cell % kCellBlocks,
+                                   cell / cells * kCellBlocks + in_cell / kCellBlocks);
         domains[b].fill(kEmptyDomain);
         const bool by_lens = grouping == Grouping::kDefocus || grouping == Grouping::kBoth;
         const std::vector<std::uint16_t> order = by_lens ? lens_order(pattern, spp) : std::vector<std::uint16_t>();
@@ -158,8 +170,9 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
                                  : grouping == Grouping::kMotion ? static_cast<int>(raw.stratum_t)
                                                                   : index;
                 SampleVector& vector = vectors_[b * spp + slot];
-                vector.x[lane] = static_cast<float>(lane % kBlockSize) + sample.x;
-                vector.y[lane] = -(static_cast<float>(lane / kBlockSize) + sample.y);
+                const LocalOffset place = local_offset(static_cast<int>(b) % kBlocksPerCell, lane);
+                vector.x[lane] = place.x + sample.x;
+                vector.y[lane] = place.y - sample.y;
                 vector.u[lane] = sample.u;
                 vector.v[lane] = sample.v;
                 vector.t[lane] = sample.t;
@@ -176,13 +189,11 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
     for (const auto& block : domains)
         for (std::size_t s = 0; s < domains_.size(); ++s) extend(domains_[s], block[s]);
 
-    const int cells = period_ / kCellSize;
     strata_.resize(static_cast<std::size_t>(cells) * cells);
     for (int cell = 0; cell < cells * cells; ++cell) {
         std::map<std::pair<int, int>, std::uint64_t> masks;
         for (int i = 0; i < kBlocksPerCell; ++i) {
-            const int bx = cell % cells * kCellBlocks + i % kCellBlocks, by = cell / cells * kCellBlocks + i / kCellBlocks;
-            const std::size_t b = static_cast<std::size_t>(by) * side + bx;
+            const std::size_t b = static_cast<std::size_t>(cell) * kBlocksPerCell + i;
             for (int slot = 0; slot < spp; ++slot) masks[{slot, stratum[b * spp + slot]}] |= std::uint64_t{1} << i;
         }
         for (const auto& [key, blocks_mask] : masks)
@@ -200,14 +211,16 @@ std::size_t SampleTable::cell_index(int cx, int cy) const {
 }
 
 std::size_t SampleTable::block_index(int bx, int by) const {
-    const int cells = period_ / kCellSize;
-    const std::size_t cell = cell_index(bx / kCellBlocks, by / kCellBlocks);
-    const std::size_t x = cell % cells * kCellBlocks + bx % kCellBlocks, y = cell / cells * kCellBlocks + by % kCellBlocks;
-    return y * (period_ / kBlockSize) + x;
+    return cell_index(bx / kCellBlocks, by / kCellBlocks) * kBlocksPerCell + by % kCellBlocks * kCellBlocks + bx % kCellBlocks;
 }
 
 std::span<const SampleVector> SampleTable::block(int bx, int by) const {
     return std::span(vectors_).subspan(block_index(bx, by) * spp_, spp_);
+}
+
+std::span<const SampleVector> SampleTable::cell(int cx, int cy) const {
+    const std::size_t vectors = static_cast<std::size_t>(kBlocksPerCell) * spp_;
+    return std::span(vectors_).subspan(cell_index(cx, cy) * vectors, vectors);
 }
 
 std::span<const std::uint16_t> SampleTable::indices(int bx, int by) const {
@@ -222,10 +235,11 @@ int SampleTable::slot_of(int px, int py, int index) const {
 }
 
 SamplePoint SampleTable::sample(int px, int py, int index) const {
-    const int column = px % kBlockSize, row = py % kBlockSize, lane = row * kBlockSize + column;
+    const int lane = py % kBlockSize * kBlockSize + px % kBlockSize;
     const SampleVector& vector = block(px / kBlockSize, py / kBlockSize)[slot_of(px, py, index)];
-    return {vector.x[lane] - static_cast<float>(column), -vector.y[lane] - static_cast<float>(row), vector.u[lane],
-            vector.v[lane], vector.t[lane]};
+    const int block = py % kCellSize / kBlockSize * kCellBlocks + px % kCellSize / kBlockSize;
+    const LocalOffset place = local_offset(block, lane);
+    return {vector.x[lane] - place.x, place.y - vector.y[lane], vector.u[lane], vector.v[lane], vector.t[lane]};
 }
 
 }  // namespace pentaprism

@@ -23,8 +23,8 @@ struct SamplePoint {
     float x = 0, y = 0, u = 0, v = 0, t = 0;
 };
 
-/// Sixteen samples, lane = 4 * (row in the block) + column. (x, y) is the place in the block of 4x4 pixels, from its top
-/// left corner, x right in [0, 4), y UP in (-4, 0].
+/// Sixteen samples, lane = 4 * (row in the block) + column. (x, y) is the offset in pixels from the middle of the sample's
+/// cell, y UP, both in [-16, 16]: what the exact test calls (hx, hy).
 struct alignas(64) SampleVector {
     float x[kLanes], y[kLanes], u[kLanes], v[kLanes], t[kLanes];
 };
@@ -49,6 +49,10 @@ class SampleTable {
     /// Blocks are addressed in the whole picture: block (bx, by) covers pixels [4 bx, 4 bx + 4) x [4 by, 4 by + 4).
     std::span<const SampleVector> block(int bx, int by) const;
 
+    /// All vectors of a cell: [block * slots + slot], block = 8 * (row in the cell) + column, the order of Hits. Cells are addressed
+    /// in the whole picture: cell (cx, cy) covers pixels [32 cx, 32 cx + 32) x ...
+    std::span<const SampleVector> cell(int cx, int cy) const;
+
     /// Sample index (0 .. spp - 1) of each lane of each slot of a block: at [slot * kLanes + lane]. The inverse for one
     /// lane is slot_of().
     std::span<const std::uint16_t> indices(int bx, int by) const;
@@ -67,7 +71,6 @@ class SampleTable {
         std::uint16_t slot, stratum;
         std::uint64_t blocks;
     };
-    /// Cells are addressed in the whole picture: cell (cx, cy) covers pixels [32 cx, 32 cx + 32) x ...
     std::span<const Stratum> strata(int cx, int cy) const;
 
   private:
@@ -77,7 +80,7 @@ class SampleTable {
     int spp_, period_;
     std::uint32_t seed_;
     Grouping grouping_;
-    std::vector<SampleVector> vectors_;       // [block][slot]
+    std::vector<SampleVector> vectors_;       // [cell of the period][block][slot]
     std::vector<std::uint16_t> indices_;      // [block][slot][lane]
     std::vector<std::uint16_t> slots_;        // [block][lane][index]
     std::vector<Domain> domains_;

@@ -75,21 +75,18 @@ class LocalRun {
 class CellSamples {
   public:
     CellSamples(const SampleTable& samples, const Tile& tile) {
-        for (int block = 0; block < kBlocksPerCell; ++block)
-            blocks_[block] = samples.block(tile.cell_x() * kCellBlocks + block % kCellBlocks,
-                                           tile.cell_y() * kCellBlocks + block / kCellBlocks);
+        vectors_ = samples.cell(tile.cell_x(), tile.cell_y());
+        slots_ = static_cast<std::size_t>(samples.slots());
     }
     LocalSample at(int pixel, int slot) const {
         const int block = pixel / kLanes, lane = pixel % kLanes;
-        const SampleVector& vector = blocks_[block][slot];
-        const int half = kCellSize / 2;
-        const float left = static_cast<float>(block % kCellBlocks * kBlockSize - half);
-        const float top = static_cast<float>(half - block / kCellBlocks * kBlockSize);
-        return {left + vector.x[lane], top + vector.y[lane], vector.u[lane], vector.v[lane], vector.t[lane]};
+        const SampleVector& vector = vectors_[block * slots_ + slot];
+        return {vector.x[lane], vector.y[lane], vector.u[lane], vector.v[lane], vector.t[lane]};
     }
 
   private:
-    std::array<std::span<const SampleVector>, kBlocksPerCell> blocks_;
+    std::span<const SampleVector> vectors_;
+    std::size_t slots_;
 };
 
 std::size_t hit_index(int pixel, int slot, int slots) {

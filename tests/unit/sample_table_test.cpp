@@ -175,8 +175,8 @@ TEST(SampleTable, HoldsEverySampleOfABlockOnceWhereItsIndexSays) {
                         ASSERT_EQ(table.slot_of(px, py, index), slot);
                         const SamplePoint s = table.sample(px, py, index);
                         const SampleVector& v = block[slot];
-                        ASSERT_EQ(v.x[lane], static_cast<float>(column) + s.x);
-                        ASSERT_EQ(v.y[lane], -(static_cast<float>(row) + s.y));
+                        ASSERT_EQ(v.x[lane], static_cast<float>(px % kCellSize - kCellSize / 2) + s.x);
+                        ASSERT_EQ(v.y[lane], static_cast<float>(kCellSize / 2 - py % kCellSize) - s.y);
                         ASSERT_TRUE(v.u[lane] == s.u && v.v[lane] == s.v && v.t[lane] == s.t);
                     }
                     ASSERT_EQ(seen.size(), static_cast<std::size_t>(spp));
