@@ -12,9 +12,9 @@ namespace pentaprism {
 
 /// Depths within this of each other, relative, are called equal (docs/develop/verification.md).
 inline constexpr double kDepthTolerance = 1e-5;
-/// Two surfaces that double precision puts no further apart than the last bit of a depth in float are a tie: either may
-/// win.
-inline constexpr double kDepthTie = 0x1p-23;
+/// Two surfaces that double precision puts no further apart than this, relative, are a tie: the depths of a float test,
+/// some 1e-7 to 1e-6 off, cannot tell which is nearer, so either may win.
+inline constexpr double kDepthTie = 1e-6;
 /// Pixels from an outline within which the rounding of a float test may decide.
 inline constexpr double kEdgeTolerance = 1e-2;
 
