@@ -339,6 +339,13 @@ TEST_F(GltfWriter, KeepsAnimationsKeyForKey) {
     }
 }
 
+// The reader drops vertices that no triangle uses: the corners are what must stay.
+std::vector<glm::vec3> corner_positions(const Primitive& primitive) {
+    std::vector<glm::vec3> corners;
+    for (const std::uint32_t index : primitive.indices) corners.push_back(primitive.positions[index]);
+    return corners;
+}
+
 TEST_F(GltfWriter, WritesABuiltinSceneThatReadsBackTriangleForTriangle) {
     for (const char* name : {"cubes", "hand"}) {
         const Scene scene = make_builtin_scene(name), read = written_and_read(scene);
@@ -346,7 +353,7 @@ TEST_F(GltfWriter, WritesABuiltinSceneThatReadsBackTriangleForTriangle) {
         ASSERT_EQ(read.meshes.size(), scene.meshes.size());
         for (std::size_t i = 0; i < scene.meshes.size(); ++i)
             for (std::size_t k = 0; k < scene.meshes[i].primitives.size(); ++k)
-                EXPECT_EQ(scene.meshes[i].primitives[k].positions, read.meshes[i].primitives[k].positions)
+                EXPECT_TRUE(corner_positions(scene.meshes[i].primitives[k]) == corner_positions(read.meshes[i].primitives[k]))
                     << scene.meshes[i].name;
     }
 }
