@@ -24,11 +24,11 @@ Span texels_between(Wrap wrap, float from, float to, int n) {
     int first = static_cast<int>(std::floor(from * static_cast<float>(n) - 0.5f)) - 1;
     int last = static_cast<int>(std::floor(to * static_cast<float>(n) - 0.5f)) + 2;
     if (wrap == Wrap::kClampToEdge) return {std::clamp(first, 0, n - 1), std::clamp(last, 0, n - 1)};
-    if (wrap == Wrap::kRepeat) {
-        const int shift = (first >= 0 ? first / n : -((n - 1 - first) / n)) * n;
-        first -= shift;
-        last -= shift;
-    }
+    const int period = wrap == Wrap::kRepeat ? n : 2 * n;
+    const int shift = (first >= 0 ? first / period : -((period - 1 - first) / period)) * period;
+    first -= shift;
+    last -= shift;
+    if (first >= n && last < 2 * n) return {2 * n - 1 - last, 2 * n - 1 - first};  // mirrored
     return first >= 0 && last < n ? Span{first, last} : all;
 }
 

@@ -36,7 +36,7 @@ Scene scene_of(AlphaMode mode, Wrap wrap, int triangles) {
     std::mt19937 random(11);
     std::uniform_real_distribution<float> place(wrap == Wrap::kClampToEdge ? -0.5f : -12.0f,
                                                 wrap == Wrap::kClampToEdge ? 1.5f : 12.0f);
-    std::uniform_real_distribution<float> extent(-0.06f, 0.06f);
+    std::uniform_real_distribution<float> extent(-0.02f, 0.02f);
     Primitive primitive;
     primitive.material = 0;
     for (int t = 0; t < triangles; ++t) {
