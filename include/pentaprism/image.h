@@ -1,10 +1,9 @@
 #pragma once
 // Picture files: written row by row as they are rendered, under the name FILE.part until they are whole.
 
-#include <pentaprism/render.h>
-
 #include <filesystem>
 #include <memory>
+#include <pentaprism/render.h>
 #include <string>
 #include <string_view>
 

@@ -3,7 +3,6 @@
 // pixels.
 
 #include <pentaprism/settings.h>
-
 #include <string>
 
 namespace pentaprism {

@@ -1,5 +1,6 @@
 #pragma once
-// From a scene to pixels. A frame is delivered in bands of rows, top to bottom, so a picture never has to fit in memory.
+// From a scene to pixels. A frame is delivered in bands of rows, top to bottom, so a picture never has to fit in
+// memory.
 
 #include <array>
 #include <cstdint>
@@ -16,16 +17,16 @@ namespace pentaprism {
 
 /// What is known of a frame before its first pixel: it goes into the header of an EXR file.
 struct FrameInfo {
-    int width = 0, height = 0;                    ///< of the whole picture
-    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;           ///< the part that is rendered, half open
+    int width = 0, height = 0;           ///< of the whole picture
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< the part that is rendered, half open
     double frame = 0.0, fps = 24.0;
     double shutter_open = 0.0, shutter_close = 0.0;  ///< seconds
-    double lens_radius = 0.0;                     ///< metres, 0: pinhole
-    double focus_distance = 0.0;                  ///< metres; 0 for a pinhole
-    double fstop = 0.0;                           ///< 0 for a pinhole
+    double lens_radius = 0.0;                        ///< metres, 0: pinhole
+    double focus_distance = 0.0;                     ///< metres; 0 for a pinhole
+    double fstop = 0.0;                              ///< 0 for a pinhole
     double focal_length_mm = 0.0;
-    std::array<double, 16> world_to_camera{};     ///< column-major, at mid-shutter; camera looks along -z
-    std::array<double, 16> world_to_ndc{};        ///< column-major, at mid-shutter; NDC in [-1,1], y up
+    std::array<double, 16> world_to_camera{};  ///< column-major, at mid-shutter; camera looks along -z
+    std::array<double, 16> world_to_ndc{};     ///< column-major, at mid-shutter; NDC in [-1,1], y up
     std::string camera;
     int max_motion_segments = 1;
 };
@@ -60,7 +61,8 @@ class Renderer {
     ~Renderer();
 
     /// As render_frame(). One frame at a time: a frame uses all threads by itself.
-    void render(const RenderSettings& settings, double frame, RowSink& sink, RenderStats& stats, const Progress& progress = {});
+    void render(const RenderSettings& settings, double frame, RowSink& sink, RenderStats& stats,
+                const Progress& progress = {});
 
   private:
     const Scene& scene_;

@@ -8,25 +8,26 @@
 namespace pentaprism {
 
 struct VerifyReport {
-    std::string scene, reference;    ///< reference: "embree VERSION" and/or "brute force"
+    std::string scene, reference;  ///< reference: "embree VERSION" and/or "brute force"
     int width = 0, height = 0, spp = 0;
     std::int64_t samples = 0;
-    std::int64_t disagreements = 0;  ///< samples whose triangle or depth differ from the reference's
-    double per_million = 0.0;        ///< ours_wrong in a million samples
-    std::int64_t ours_wrong = 0;     ///< disagreements in which double precision is against us
-    std::int64_t away_from_edge = 0; ///< of them: over 1e-2 pixel from the nearest edge of each triangle concerned, and
-                                     ///< depths that differ by over 1e-5 relative
-    std::int64_t depth_ties = 0;     ///< disagreements on which of two surfaces is nearer that lie within 1e-6 of each other
-                                     ///< (relative, in double), such as coplanar ones; not in ours_wrong
-    double worst_margin = 0.0;       ///< largest such distance in pixels among ours_wrong whose depths differ so: over 1e-2
-                                     ///< exactly when away_from_edge is not 0
-    double worst_depth_error = 0.0;  ///< largest relative depth error where both agree on the triangle
-    std::int64_t brute_force_samples = 0;      ///< compared with the brute-force reference, too
+    std::int64_t disagreements = 0;   ///< samples whose triangle or depth differ from the reference's
+    double per_million = 0.0;         ///< ours_wrong in a million samples
+    std::int64_t ours_wrong = 0;      ///< disagreements in which double precision is against us
+    std::int64_t away_from_edge = 0;  ///< of them: over 1e-2 pixel from the nearest edge of each triangle concerned,
+                                      ///< and depths that differ by over 1e-5 relative
+    std::int64_t depth_ties = 0;  ///< disagreements on which of two surfaces is nearer that lie within 1e-6 of each
+                                  ///< other (relative, in double), such as coplanar ones; not in ours_wrong
+    double worst_margin = 0.0;  ///< largest such distance in pixels among ours_wrong whose depths differ so: over 1e-2
+                                ///< exactly when away_from_edge is not 0
+    double worst_depth_error = 0.0;        ///< largest relative depth error where both agree on the triangle
+    std::int64_t brute_force_samples = 0;  ///< compared with the brute-force reference, too
     std::int64_t brute_force_disagreements = 0;
 };
 
 /// Renders frame `frame` and checks it. Throws Error(kBackend) when neither reference can be had.
-VerifyReport verify_frame(const Scene& scene, const RenderSettings& settings, double frame, const Progress& progress = {});
+VerifyReport verify_frame(const Scene& scene, const RenderSettings& settings, double frame,
+                          const Progress& progress = {});
 
 /// Visibility alone, timed against Embree on the same samples: medians of alternating runs, milliseconds.
 struct PeerTimes {

@@ -1,6 +1,6 @@
 #pragma once
-// Which triangles concern which tile: the sort in sort-middle. Order within a tile is that of submission (triangle, then motion
-// segment), so nothing depends on who did what.
+// Which triangles concern which tile: the sort in sort-middle. Order within a tile is that of submission (triangle,
+// then motion segment), so nothing depends on who did what.
 
 #include <cstdint>
 #include <span>
@@ -21,8 +21,8 @@ struct BinnedTriangle {
 
 class Bins {
   public:
-    /// `limits`: the pixels that are rendered. Drops triangles with numbers that are not finite or above 1e12, those that
-    /// turn a culled back to every sample, and those outside the limits.
+    /// `limits`: the pixels that are rendered. Drops triangles with numbers that are not finite or above 1e12, those
+    /// that turn a culled back to every sample, and those outside the limits.
     Bins(const Frame& frame, int tile_size, const PixelRect& limits);
 
     std::span<const BinnedTriangle> triangles() const { return triangles_; }

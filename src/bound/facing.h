@@ -1,9 +1,9 @@
 #pragma once
 // Which side of a moving, defocused triangle can be seen, over the whole shutter and lens.
 //
-// After Munkberg & Akenine-Moller 2011 (Backface Culling for Motion Blur and Depth of Field): the determinant as a Bernstein
-// polynomial in t. Looking at the two shutter ends alone is not enough (docs/develop/algorithms.md 3.6 has the
-// counterexample).
+// After Munkberg & Akenine-Moller 2011 (Backface Culling for Motion Blur and Depth of Field): the determinant as a
+// Bernstein polynomial in t. Looking at the two shutter ends alone is not enough (docs/develop/algorithms.md 3.6 has
+// the counterexample).
 
 #include "frame/frame.h"
 

@@ -1,10 +1,11 @@
 #pragma once
-// A moving triangle sheared to the middle of one cell of a fixed grid of 32x32 pixels: the form in which the exact test and
-// every culling test see it.
+// A moving triangle sheared to the middle of one cell of a fixed grid of 32x32 pixels: the form in which the exact test
+// and every culling test see it.
 //
-// In raster clip space X = x + u*c - gx*w cancels when the triangle is far from the middle of the picture: in float that
-// puts hits up to 5.5e-5 pixel outside their edge. With g = centre + h, x' = x - centre*w is formed in double and rounded
-// once, and X = x' + u*c - h*w has |h| <= 16. The grid is part of the exact test's definition, whatever the tile size.
+// In raster clip space X = x + u*c - gx*w cancels when the triangle is far from the middle of the picture: in float
+// that puts hits up to 5.5e-5 pixel outside their edge. With g = centre + h, x' = x - centre*w is formed in double and
+// rounded once, and X = x' + u*c - h*w has |h| <= 16. The grid is part of the exact test's definition, whatever the
+// tile size.
 
 #include <cstdint>
 
@@ -17,12 +18,12 @@ namespace pentaprism {
 struct LocalTriangle {
     float qx[3], qy[3], qw[3], qc[3], qz[3];
     float dx[3], dy[3], dw[3], dc[3], dz[3];
-    float segments = 1, segment = 0;     ///< s = t * segments - segment; only samples with 0 <= s < 1 belong here
+    float segments = 1, segment = 0;  ///< s = t * segments - segment; only samples with 0 <= s < 1 belong here
     float w_near = 0, z_near = 0, z_far = 0;
-    std::uint32_t triangle = 0;          ///< of the frame, without its segment
+    std::uint32_t triangle = 0;  ///< of the frame, without its segment
     bool two_sided = true, behind = false, alpha_tested = false, orthographic = false;
-    float box[4] = {0, 0, 0, 0};         ///< x0, x1, y0, y1 of screen bounds in pixels from the middle of the picture, y
-                                         ///< up; asked only if `behind` (some w < w_near)
+    float box[4] = {0, 0, 0, 0};  ///< x0, x1, y0, y1 of screen bounds in pixels from the middle of the picture, y
+                                  ///< up; asked only if `behind` (some w < w_near)
 };
 
 /// Middle of the cell in pixels from the middle of the picture, y up.

@@ -1,8 +1,9 @@
 #pragma once
-// Where on the screen a moving, defocused triangle can be seen: conservative for every (u, v, t), at and behind the camera
-// plane too.
+// Where on the screen a moving, defocused triangle can be seen: conservative for every (u, v, t), at and behind the
+// camera plane too.
 //
-// The fifteen-edge box: McGuire, Enderton, Shirley, Luebke 2010 conjectured it, docs/develop/algorithms.md 3.2 proves it.
+// The fifteen-edge box: McGuire, Enderton, Shirley, Luebke 2010 conjectured it, docs/develop/algorithms.md 3.2 proves
+// it.
 
 #include <glm/vec2.hpp>
 
@@ -17,8 +18,8 @@ struct ScreenBox {
     bool empty() const { return !(x0 <= x1); }
 };
 
-/// Holds every (gx, gy) at which some (u, v, t) of lens and segment can be hit. `ratio`: Lens::ratio. Includes the slack for
-/// the exact test's rounding.
+/// Holds every (gx, gy) at which some (u, v, t) of lens and segment can be hit. `ratio`: Lens::ratio. Includes the
+/// slack for the exact test's rounding.
 ScreenBox screen_bounds(const MovingTriangle& triangle, double w_near, double ratio);
 
 /// Half-open rectangle of pixels, y down.

@@ -22,8 +22,8 @@ struct Box3 {
 /// World-space box of all that is placed at `node` or below it; of the whole scene for kNone.
 Box3 bounding_box(const Scene& scene, const Pose& pose, Index node);
 
-/// Depth along the axis of the nearest surface that a pinhole sees at picture position (x, y) in pixels from the top left
-/// corner; +infinity where there is none.
+/// Depth along the axis of the nearest surface that a pinhole sees at picture position (x, y) in pixels from the top
+/// left corner; +infinity where there is none.
 double depth_at_pixel(const Scene& scene, const Pose& pose, const View& view, double x, double y);
 
 /// The first node of that name, kNone if there is none.

@@ -3,8 +3,8 @@
 //
 // Raster clip space, used by every later stage: x = fx * Xc, y = fy * Yc, w = distance in front of the lens plane, so
 // that (x/w, y/w) is the offset in pixels from the middle of the picture, y up. It is the clip space of the papers
-// times half the resolution: a circle of confusion is then round in the same unit as x. An orthographic camera has w = 1
-// everywhere and keeps its depth in z; a perspective camera has z = w.
+// times half the resolution: a circle of confusion is then round in the same unit as x. An orthographic camera has w =
+// 1 everywhere and keeps its depth in z; a perspective camera has z = w.
 
 #include <glm/mat4x4.hpp>
 #include <pentaprism/scene.h>
@@ -17,12 +17,12 @@
 namespace pentaprism {
 
 /// c(z) = a + b * z: signed circle of confusion, a radius in pixels times w; negative in front of the focus plane. A
-/// sample (u, v) sees a point at (x + u*c, y + v*ratio*c). Derivation: thin lens of radius A focused at F, with f_px = fx:
-/// a = -A*f_px, b = A*f_px/F (perspective). An orthographic camera shears by the same slope: a = -A*fx, b = A*fx/F.
+/// sample (u, v) sees a point at (x + u*c, y + v*ratio*c). Derivation: thin lens of radius A focused at F, with f_px =
+/// fx: a = -A*f_px, b = A*f_px/F (perspective). An orthographic camera shears by the same slope: a = -A*fx, b = A*fx/F.
 struct Lens {
     double a = 0.0, b = 0.0;
-    double ratio = 1.0;           ///< height of the circle of confusion over its width (algorithms' lambda, pixels square)
-    double radius = 0.0;          ///< metres, 0: pinhole
+    double ratio = 1.0;   ///< height of the circle of confusion over its width (algorithms' lambda, pixels square)
+    double radius = 0.0;  ///< metres, 0: pinhole
     double focus_distance = 0.0;  ///< metres
     double fstop = 0.0;           ///< 0: pinhole
     int blades = 0;               ///< 0: a disk
@@ -41,12 +41,12 @@ struct Shutter {
 struct View {
     int width = 0, height = 0;
     bool perspective = true;
-    double fx = 1.0, fy = 1.0;                      ///< pixels (perspective: focal length; orthographic: pixels per metre)
-    double depth_near = 0.01, depth_far = 1e30;     ///< metres along the axis
+    double fx = 1.0, fy = 1.0;                   ///< pixels (perspective: focal length; orthographic: pixels per metre)
+    double depth_near = 0.01, depth_far = 1e30;  ///< metres along the axis
     Lens lens;
     Shutter shutter;
-    Index camera_node = kNone;                      ///< kNone: a camera that frames the scene
-    glm::dmat4 fixed_world_to_camera{1.0};          ///< used when camera_node is kNone
+    Index camera_node = kNone;              ///< kNone: a camera that frames the scene
+    glm::dmat4 fixed_world_to_camera{1.0};  ///< used when camera_node is kNone
     std::string camera_name;
     double focal_length_mm = 0.0;
     /// Smallest w that counts as in front of the camera in screen bounds: depth_near, or 1/2 for w = 1 everywhere.
@@ -59,8 +59,8 @@ glm::dmat4 world_to_camera(const View& view, const Pose& pose);
 /// A point of camera space in raster clip space: x, y, w and the depth z.
 glm::dvec4 to_raster_clip(const View& view, const glm::dvec3& camera_space);
 
-/// Resolves camera, lens and shutter of frame number `frame`. Throws Error(kUsage) for a camera, node or animation that the
-/// scene does not have.
+/// Resolves camera, lens and shutter of frame number `frame`. Throws Error(kUsage) for a camera, node or animation that
+/// the scene does not have.
 View make_view(const Scene& scene, const RenderSettings& settings, double frame);
 
 }  // namespace pentaprism

@@ -1,6 +1,6 @@
 #pragma once
-// Which samples of a tile are covered, by what, how far: fills the tile's Hits. Two implementations with the same result, bit
-// for bit: one sample at a time with any culling test (the readable truth), and vectors of sixteen samples.
+// Which samples of a tile are covered, by what, how far: fills the tile's Hits. Two implementations with the same
+// result, bit for bit: one sample at a time with any culling test (the readable truth), and vectors of sixteen samples.
 
 #include <cstdint>
 #include <span>
@@ -15,8 +15,8 @@ namespace pentaprism {
 struct TileWork {
     const Frame& frame;
     const SampleTable& samples;
-    std::span<const BinnedTriangle> triangles;   ///< of the picture
-    std::span<const std::uint32_t> list;         ///< those of this tile, in submission order
+    std::span<const BinnedTriangle> triangles;  ///< of the picture
+    std::span<const std::uint32_t> list;        ///< those of this tile, in submission order
     Tile tile;
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 // The exact 5D coverage test, one sample at a time: the truth that every vector kernel equals bit for bit.
 //
-// Homogeneous edge functions (Olano & Greer 1997) on the vertices as the sample's lens position and time place them; the
-// watertight tie rule and condition (N) are this project's (docs/develop/algorithms.md, 2).
+// Homogeneous edge functions (Olano & Greer 1997) on the vertices as the sample's lens position and time place them;
+// the watertight tie rule and condition (N) are this project's (docs/develop/algorithms.md, 2).
 
 #include "bound/local_triangle.h"
 
@@ -10,8 +10,8 @@ namespace pentaprism {
 
 struct SampleHit {
     bool hit = false;
-    float depth = 0;            ///< metres along the axis
-    float barycentrics[3] = {}; ///< perspective-correct, of the triangle at the sample's time; sum 1
+    float depth = 0;             ///< metres along the axis
+    float barycentrics[3] = {};  ///< perspective-correct, of the triangle at the sample's time; sum 1
     bool front = true;
 };
 

@@ -11,8 +11,8 @@ namespace pentaprism {
 
 inline constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 
-/// Pixels [x0, x1) x [y0, y1) of the picture; x0, y0 are multiples of the tile size, so of kBlockSize, and a tile lies in one
-/// cell. x1, y1 may cut through a block at the picture's border: lanes outside hold no hits.
+/// Pixels [x0, x1) x [y0, y1) of the picture; x0, y0 are multiples of the tile size, so of kBlockSize, and a tile lies
+/// in one cell. x1, y1 may cut through a block at the picture's border: lanes outside hold no hits.
 struct Tile {
     int x0, y0, x1, y1;
     int cell_x() const { return x0 / kCellSize; }

@@ -11,14 +11,15 @@
 
 namespace pentaprism {
 
-/// Closed ranges of what is asked about: (hx, hy) in pixels from the cell's middle, y up, within [-16, 16]; and the lens and
-/// shutter ranges in which the samples lie. |u| <= 1, |v| <= Lens::ratio, 0 <= t <= 1.
+/// Closed ranges of what is asked about: (hx, hy) in pixels from the cell's middle, y up, within [-16, 16]; and the
+/// lens and shutter ranges in which the samples lie. |u| <= 1, |v| <= Lens::ratio, 0 <= t <= 1.
 struct Footprint {
     float x0, x1, y0, y1;
     Domain domain;
 };
 
-/// What prepare() works out for one triangle and footprint and keeps() reads; each test has its own meaning for the numbers.
+/// What prepare() works out for one triangle and footprint and keeps() reads; each test has its own meaning for the
+/// numbers.
 struct CullState {
     std::array<float, 64> values;
 };
@@ -27,8 +28,9 @@ struct CullTest {
     const char* name;   ///< `--culling` value and row in reports: the file's stem with '-' for '_'
     const char* paper;  ///< where the bound comes from
 
-    /// False promises: no sample in the footprint hits the triangle, as cover_sample() decides, rounding included. Never
-    /// throws or allocates; thread-safe. Triangles at or behind the camera plane, of zero area and with NaN are allowed.
+    /// False promises: no sample in the footprint hits the triangle, as cover_sample() decides, rounding included.
+    /// Never throws or allocates; thread-safe. Triangles at or behind the camera plane, of zero area and with NaN are
+    /// allowed.
     bool (*prepare)(const LocalTriangle& triangle, const Footprint& footprint, CullState& state);
 
     /// False promises the same of one sample of the footprint. Asked only after prepare() returned true.

@@ -1,7 +1,7 @@
 #pragma once
-// The scene posed at the shutter knots through one camera: moving triangles in raster clip space (camera/view.h). They are
-// never clipped and never divided by w. The numbers stored here are the model: every later stage, the vector kernels
-// and the references alike, starts from these floats.
+// The scene posed at the shutter knots through one camera: moving triangles in raster clip space (camera/view.h). They
+// are never clipped and never divided by w. The numbers stored here are the model: every later stage, the vector
+// kernels and the references alike, starts from these floats.
 
 #include <array>
 #include <cstdint>
@@ -22,25 +22,25 @@ namespace pentaprism {
 struct Part {
     Placement placement;
     std::uint32_t first_triangle = 0, triangle_count = 0;
-    std::uint32_t first_point = 0;    ///< of knot 0; knot k follows at first_point + k * vertex_count
+    std::uint32_t first_point = 0;  ///< of knot 0; knot k follows at first_point + k * vertex_count
     std::uint32_t vertex_count = 0;
-    int segments = 1;                 ///< straight pieces of each path; knots at t = k / segments
-    bool moves = false;               ///< false: all knots are the same points, stored once
-    bool two_sided = true;            ///< false: back faces are not hit
-    bool mirrored = false;            ///< corners were swapped so that front faces are counter-clockwise again
+    int segments = 1;       ///< straight pieces of each path; knots at t = k / segments
+    bool moves = false;     ///< false: all knots are the same points, stored once
+    bool two_sided = true;  ///< false: back faces are not hit
+    bool mirrored = false;  ///< corners were swapped so that front faces are counter-clockwise again
     AlphaMode alpha_mode = AlphaMode::kOpaque;
-    Index material = kNone;           ///< into Scene::materials, or kNone
+    Index material = kNone;  ///< into Scene::materials, or kNone
 };
 
 struct Frame {
-    const Scene* scene = nullptr;     ///< not owned; outlives the frame
+    const Scene* scene = nullptr;  ///< not owned; outlives the frame
     View view;
     std::vector<Part> parts;
-    std::vector<glm::vec4> points;    ///< x, y, w, c of each vertex at each knot of its part
-    std::vector<float> depths;        ///< orthographic cameras only: z of each point (else z = w)
-    std::vector<std::uint32_t> corners;  ///< 3 for each triangle: into `points`, at knot 0
-    std::vector<std::uint32_t> part_of;  ///< for each triangle: into `parts`
-    Pose middle;                      ///< the scene at mid-shutter, the shading time
+    std::vector<glm::vec4> points;             ///< x, y, w, c of each vertex at each knot of its part
+    std::vector<float> depths;                 ///< orthographic cameras only: z of each point (else z = w)
+    std::vector<std::uint32_t> corners;        ///< 3 for each triangle: into `points`, at knot 0
+    std::vector<std::uint32_t> part_of;        ///< for each triangle: into `parts`
+    Pose middle;                               ///< the scene at mid-shutter, the shading time
     std::shared_ptr<const Textures> textures;  ///< set by who renders, once for all frames; null: factors alone count
 
     std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(part_of.size()); }
@@ -49,10 +49,11 @@ struct Frame {
     std::array<std::uint32_t, 3> vertices(std::uint32_t triangle) const;
 };
 
-/// Poses the scene. Knots are uniform; `settings.motion_segments` of them or, if 0, as many (a power of two up to 32 for each
-/// placement) as keep straight segments within 0.1 pixel of the true paths. Triangles with a coordinate that is not
-/// finite or above 1e12 are dropped at setup (bound/), not here.
-Frame pose_frame(const Scene& scene, const View& view, std::span<const Index> animations, const ShutterSettings& settings);
+/// Poses the scene. Knots are uniform; `settings.motion_segments` of them or, if 0, as many (a power of two up to 32
+/// for each placement) as keep straight segments within 0.1 pixel of the true paths. Triangles with a coordinate that
+/// is not finite or above 1e12 are dropped at setup (bound/), not here.
+Frame pose_frame(const Scene& scene, const View& view, std::span<const Index> animations,
+                 const ShutterSettings& settings);
 
 /// One segment of one triangle. Index [corner][end].
 struct MovingTriangle {

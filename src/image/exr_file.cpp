@@ -13,16 +13,15 @@
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
-#include <fmt/format.h>
-#include <half.h>
-#include <pentaprism/error.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fmt/format.h>
+#include <half.h>
 #include <limits>
 #include <new>
 #include <optional>
+#include <pentaprism/error.h>
 
 #include "base/parallel.h"
 #include "image/part_file.h"

@@ -1,8 +1,7 @@
+#include <charconv>
 #include <fmt/format.h>
 #include <pentaprism/error.h>
 #include <pentaprism/frames.h>
-
-#include <charconv>
 #include <string_view>
 #include <unordered_set>
 

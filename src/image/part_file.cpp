@@ -2,12 +2,11 @@
 
 #include "image/part_file.h"
 
+#include <cerrno>
 #include <fcntl.h>
 #include <pentaprism/error.h>
-#include <unistd.h>
-
-#include <cerrno>
 #include <system_error>
+#include <unistd.h>
 
 namespace pentaprism {
 namespace {

@@ -1,11 +1,10 @@
 // Which writer or reader a file's suffix asks for, and the rules that both writers hold their caller to.
 
+#include <algorithm>
+#include <cctype>
 #include <fmt/format.h>
 #include <pentaprism/error.h>
 #include <pentaprism/image.h>
-
-#include <algorithm>
-#include <cctype>
 
 #include "image/part_file.h"
 #include "image/writers.h"

@@ -1,16 +1,15 @@
 // 8-bit sRGB by libpng, row by row. libpng reports errors by longjmp, which must not skip a C++ destructor: every call
 // goes through PngStruct::call(), whose frame holds none, and comes out as an exception.
 
-#include <fmt/format.h>
-#include <pentaprism/error.h>
-#include <png.h>
-
 #include <algorithm>
 #include <csetjmp>
 #include <cstdio>
 #include <exception>
+#include <fmt/format.h>
 #include <limits>
 #include <new>
+#include <pentaprism/error.h>
+#include <png.h>
 
 #include "base/parallel.h"
 #include "image/part_file.h"

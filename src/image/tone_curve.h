@@ -1,9 +1,8 @@
 #pragma once
 // From linear light to the 8 bits of a screen.
 
-#include <pentaprism/settings.h>
-
 #include <cstdint>
+#include <pentaprism/settings.h>
 
 namespace pentaprism {
 

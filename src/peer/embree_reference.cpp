@@ -225,7 +225,8 @@ class EmbreeReference::Impl {
             context.vector = &samples;
             context.indices = &indices[slot * kLanes];
             for (int lane = 0; lane < kLanes; ++lane) {
-                aim(packet.ray, lane, centre.x + samples.x[lane], centre.y + samples.y[lane], samples.u[lane], samples.v[lane]);
+                aim(packet.ray, lane, centre.x + samples.x[lane], centre.y + samples.y[lane], samples.u[lane],
+                    samples.v[lane]);
                 packet.ray.tnear[lane] = depth_near;
                 packet.ray.tfar[lane] = depth_far;
                 packet.ray.time[lane] = samples.t[lane];

@@ -1,6 +1,6 @@
 #pragma once
-// Visibility of a posed frame: bound, bin, cull and cover behind one door. What render_frame, verify and the timing against
-// peers call alike.
+// Visibility of a posed frame: bound, bin, cull and cover behind one door. What render_frame, verify and the timing
+// against peers call alike.
 
 #include "bin/bins.h"
 #include "cover/cover.h"
@@ -11,8 +11,8 @@ namespace pentaprism {
 
 class Visibility {
   public:
-    /// Bins the frame. `limits`: the pixels that will be asked for, within the picture. `frame` and `samples` must outlive this.
-    /// Throws Error(kUsage) for a culling test that does not exist.
+    /// Bins the frame. `limits`: the pixels that will be asked for, within the picture. `frame` and `samples` must
+    /// outlive this. Throws Error(kUsage) for a culling test that does not exist.
     Visibility(const Frame& frame, const SampleTable& samples, const MethodSettings& method, const PixelRect& limits);
 
     /// Tiles that cover the limits, rows from top to bottom, each row from left to right.

@@ -8,8 +8,8 @@ constexpr int kDigits = 6;  // 4^6 = 4096 points
 // GF(4) = {0, 1, w, w + 1} as 0, 1, 2, 3: addition is xor.
 constexpr std::uint8_t kProduct[4][4] = {{0, 0, 0, 0}, {0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}};
 
-// Digit r of the dimension with parameter alpha: the sum over c >= r of binomial(c, r) * alpha^(c - r) * (digit c of the
-// index). Binomials count modulo 2, the field's characteristic.
+// Digit r of the dimension with parameter alpha: the sum over c >= r of binomial(c, r) * alpha^(c - r) * (digit c of
+// the index). Binomials count modulo 2, the field's characteristic.
 std::uint8_t digit(std::uint32_t index, int r, std::uint8_t alpha) {
     std::uint8_t sum = 0, power = 1;
     for (int c = r; c < kDigits; ++c) {
@@ -20,8 +20,8 @@ std::uint8_t digit(std::uint32_t index, int r, std::uint8_t alpha) {
     return sum;
 }
 
-// One relabelling of digits for each dimension: linear bijections of GF(2)^2 chosen so that the top bits of a pair (x, y)
-// or (u, v) of the first four points are 00, 11, 01, 10.
+// One relabelling of digits for each dimension: linear bijections of GF(2)^2 chosen so that the top bits of a pair (x,
+// y) or (u, v) of the first four points are 00, 11, 01, 10.
 constexpr std::uint8_t kSwapped[4] = {0, 2, 1, 3};  // (high, low) -> (low, high)
 constexpr std::uint8_t kSummed[4] = {0, 2, 3, 1};   // (high, low) -> (high + low, high)
 

@@ -11,20 +11,20 @@
 
 namespace pentaprism {
 
-inline constexpr int kBlockSize = 4;                             ///< pixels a side of a block
-inline constexpr int kLanes = kBlockSize * kBlockSize;           ///< samples in a vector: one for each pixel of a block
-inline constexpr int kCellSize = 32;                             ///< pixels a side of a cell of the exact test's grid
-inline constexpr int kCellBlocks = kCellSize / kBlockSize;       ///< blocks a side of a cell
+inline constexpr int kBlockSize = 4;                        ///< pixels a side of a block
+inline constexpr int kLanes = kBlockSize * kBlockSize;      ///< samples in a vector: one for each pixel of a block
+inline constexpr int kCellSize = 32;                        ///< pixels a side of a cell of the exact test's grid
+inline constexpr int kCellBlocks = kCellSize / kBlockSize;  ///< blocks a side of a cell
 inline constexpr int kBlocksPerCell = kCellBlocks * kCellBlocks;
 
-/// One sample. x, y: offset in the pixel from its top left corner, in [0, 1), multiples of 1/256, y down. (u, v): in the
-/// unit disk, v up and already times Lens::ratio. t in [0, 1), a multiple of 2^-24.
+/// One sample. x, y: offset in the pixel from its top left corner, in [0, 1), multiples of 1/256, y down. (u, v): in
+/// the unit disk, v up and already times Lens::ratio. t in [0, 1), a multiple of 2^-24.
 struct SamplePoint {
     float x = 0, y = 0, u = 0, v = 0, t = 0;
 };
 
-/// Sixteen samples, lane = 4 * (row in the block) + column. (x, y) is the offset in pixels from the middle of the sample's
-/// cell, y UP, both in [-16, 16]: what the exact test calls (hx, hy).
+/// Sixteen samples, lane = 4 * (row in the block) + column. (x, y) is the offset in pixels from the middle of the
+/// sample's cell, y UP, both in [-16, 16]: what the exact test calls (hx, hy).
 struct alignas(64) SampleVector {
     float x[kLanes], y[kLanes], u[kLanes], v[kLanes], t[kLanes];
 };
@@ -49,8 +49,8 @@ class SampleTable {
     /// Blocks are addressed in the whole picture: block (bx, by) covers pixels [4 bx, 4 bx + 4) x [4 by, 4 by + 4).
     std::span<const SampleVector> block(int bx, int by) const;
 
-    /// All vectors of a cell: [block * slots + slot], block = 8 * (row in the cell) + column, the order of Hits. Cells are addressed
-    /// in the whole picture: cell (cx, cy) covers pixels [32 cx, 32 cx + 32) x ...
+    /// All vectors of a cell: [block * slots + slot], block = 8 * (row in the cell) + column, the order of Hits. Cells
+    /// are addressed in the whole picture: cell (cx, cy) covers pixels [32 cx, 32 cx + 32) x ...
     std::span<const SampleVector> cell(int cx, int cy) const;
 
     /// Sample index (0 .. spp - 1) of each lane of each slot of a block: at [slot * kLanes + lane]. The inverse for one
@@ -66,7 +66,8 @@ class SampleTable {
     /// Strata of (u, v, t): all samples of a stratum lie in domains()[stratum] wherever they are in the picture.
     std::span<const Domain> domains() const { return domains_; }
 
-    /// The vectors of a cell by stratum: slot `slot` of the blocks in `blocks` (bit 8 * row + column) lies in `stratum`.
+    /// The vectors of a cell by stratum: slot `slot` of the blocks in `blocks` (bit 8 * row + column) lies in
+    /// `stratum`.
     struct Stratum {
         std::uint16_t slot, stratum;
         std::uint64_t blocks;
@@ -80,9 +81,9 @@ class SampleTable {
     int spp_, period_;
     std::uint32_t seed_;
     Grouping grouping_;
-    std::vector<SampleVector> vectors_;       // [cell of the period][block][slot]
-    std::vector<std::uint16_t> indices_;      // [block][slot][lane]
-    std::vector<std::uint16_t> slots_;        // [block][lane][index]
+    std::vector<SampleVector> vectors_;   // [cell of the period][block][slot]
+    std::vector<std::uint16_t> indices_;  // [block][slot][lane]
+    std::vector<std::uint16_t> slots_;    // [block][lane][index]
     std::vector<Domain> domains_;
     std::vector<std::vector<Stratum>> strata_;  // by cell of the period
 };

@@ -3,17 +3,16 @@
 // the same scene gives the same bytes. Lens and shutter data go into the camera's `extras`; see the reader for their
 // names.
 
-#include <fmt/format.h>
-#include <pentaprism/error.h>
-#include <pentaprism/scene.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <pentaprism/error.h>
+#include <pentaprism/scene.h>
 #include <set>
 #include <span>
 

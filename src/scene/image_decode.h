@@ -1,9 +1,8 @@
 #pragma once
 // Pictures for materials, from the bytes of a PNG, JPEG or another file format to 8-bit RGBA.
 
-#include <pentaprism/scene.h>
-
 #include <cstdint>
+#include <pentaprism/scene.h>
 #include <span>
 #include <string>
 

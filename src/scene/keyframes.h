@@ -2,7 +2,6 @@
 // One animation channel at one time (glTF 2.0, appendix C).
 
 #include <pentaprism/scene.h>
-
 #include <span>
 
 namespace pentaprism {

@@ -1,10 +1,9 @@
 #pragma once
 // MTL material libraries of OBJ files.
 
-#include <pentaprism/scene.h>
-
 #include <filesystem>
 #include <map>
+#include <pentaprism/scene.h>
 #include <string>
 
 namespace pentaprism {

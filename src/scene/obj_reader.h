@@ -1,9 +1,8 @@
 #pragma once
 // Wavefront OBJ files with MTL materials.
 
-#include <pentaprism/scene.h>
-
 #include <filesystem>
+#include <pentaprism/scene.h>
 
 namespace pentaprism {
 

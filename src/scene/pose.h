@@ -15,11 +15,12 @@ struct Placement {
     Index node = kNone, mesh = kNone, primitive = kNone, instance = kNone;
 };
 
-/// All that the shown scene places, depth first from the roots, primitives and instances in order: the order of triangles in
-/// a frame, and so part of what the same input means.
+/// All that the shown scene places, depth first from the roots, primitives and instances in order: the order of
+/// triangles in a frame, and so part of what the same input means.
 std::vector<Placement> placements(const Scene& scene);
 
-/// Which clips play. "all", a name or an index, resolved by choose_animations (throws Error(kUsage) for an unknown one).
+/// Which clips play. "all", a name or an index, resolved by choose_animations (throws Error(kUsage) for an unknown
+/// one).
 std::vector<Index> choose_animations(const Scene& scene, const std::string& choice);
 
 /// The state of every node at one time.
@@ -42,8 +43,8 @@ glm::dmat4 placement_matrix(const Scene& scene, const Pose& pose, const Placemen
 /// True when the placement turns counter-clockwise triangles clockwise (negative determinant).
 bool is_mirrored(const Scene& scene, const Pose& pose, const Placement& placement);
 
-/// World-space positions of all vertices of the placement: morph first, then skin or matrix. `out` has one entry for each
-/// vertex. A skinned mesh ignores its node's own transform (glTF 2.0, 3.7.3.3).
+/// World-space positions of all vertices of the placement: morph first, then skin or matrix. `out` has one entry for
+/// each vertex. A skinned mesh ignores its node's own transform (glTF 2.0, 3.7.3.3).
 void pose_positions(const Scene& scene, const Pose& pose, const Placement& placement, std::span<glm::dvec3> out);
 
 /// World-space normals (unit length), by the inverse transpose of the same transforms; for a mirrored placement they

@@ -1,13 +1,12 @@
-#include <fmt/format.h>
-#include <pentaprism/metadata.h>
-#include <xxhash.h>
-
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <pentaprism/metadata.h>
 #include <sstream>
 #include <vector>
+#include <xxhash.h>
 
 namespace pentaprism {
 namespace {

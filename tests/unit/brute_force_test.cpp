@@ -3,9 +3,8 @@
 
 #include "peer/brute_force.h"
 
-#include <gtest/gtest.h>
-
 #include <glm/geometric.hpp>
+#include <gtest/gtest.h>
 #include <optional>
 #include <random>
 

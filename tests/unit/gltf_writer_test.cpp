@@ -353,7 +353,8 @@ TEST_F(GltfWriter, WritesABuiltinSceneThatReadsBackTriangleForTriangle) {
         ASSERT_EQ(read.meshes.size(), scene.meshes.size());
         for (std::size_t i = 0; i < scene.meshes.size(); ++i)
             for (std::size_t k = 0; k < scene.meshes[i].primitives.size(); ++k)
-                EXPECT_TRUE(corner_positions(scene.meshes[i].primitives[k]) == corner_positions(read.meshes[i].primitives[k]))
+                EXPECT_TRUE(corner_positions(scene.meshes[i].primitives[k]) ==
+                            corner_positions(read.meshes[i].primitives[k]))
                     << scene.meshes[i].name;
     }
 }
