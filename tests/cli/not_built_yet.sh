@@ -19,7 +19,8 @@ done <<'END'
 --shading sample
 --shading decoupled
 --sampler sobol
---aov depth,normal
+--aov depth,albedo
+--aov ste
 --sharp
 --dataset out
 --samples dump
