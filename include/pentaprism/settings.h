@@ -67,8 +67,18 @@ struct AnimationSettings {
     std::string animation = "all";  ///< name or index of one clip, or "all"
 };
 
+/// How the visible surface of each sample is found. Shading and film are the same for all.
+enum class VisibilityMethod {
+    kStochastic,    ///< stochastic rasterization: every sample has its own (x, y, u, v, t)
+    kAccumulation,  ///< spp passes, each with one (u, v, t) for the whole picture (Haeberli & Akeley 1990): ghosts
+    kInterleaved,   ///< InterleaveUVT (Fatahalian et al. 2009): 64 or more (u, v, t) that blocks of pixels share
+    kRaytrace       ///< the samples of kStochastic, traced with Embree; Error(kBackend) in a build without it
+};
+
 struct MethodSettings {
-    std::string culling = "auto";   ///< "auto" or a combination of culling_tests()
+    VisibilityMethod visibility = VisibilityMethod::kStochastic;
+    std::string culling =
+        "auto";  ///< "auto" or a combination of culling_tests(); kRaytrace culls nothing: "auto" alone
     std::string shading = "pixel";  ///< how often visible surfaces are shaded
     std::uint32_t seed = 0;         ///< of the sample pattern
     int threads = 0;                ///< 0: all processors

@@ -99,6 +99,10 @@ void check(const AnimationSettings& animation) {
 }
 
 void check(const MethodSettings& method) {
+    if (method.visibility == VisibilityMethod::kRaytrace && method.culling != "auto") {
+        refuse(fmt::format("--culling {}: --visibility raytrace has nothing to cull; leave one of them out",
+                           method.culling));
+    }
     check_whole("--threads", method.threads, 0, 1024);
     if (method.tile_size != 8 && method.tile_size != 16 && method.tile_size != 32) {
         refuse(fmt::format("tile size: {} is not 8, 16 or 32", method.tile_size));
@@ -141,6 +145,20 @@ const char* name_of(ShutterPosition position) {
             break;
     }
     return "center";
+}
+
+const char* name_of(VisibilityMethod method) {
+    switch (method) {
+        case VisibilityMethod::kAccumulation:
+            return "accumulation";
+        case VisibilityMethod::kInterleaved:
+            return "interleaved";
+        case VisibilityMethod::kRaytrace:
+            return "raytrace";
+        case VisibilityMethod::kStochastic:
+            break;
+    }
+    return "stochastic";
 }
 
 using Json = nlohmann::ordered_json;
@@ -195,6 +213,7 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
     json["motion_segments"] = shutter.motion_segments;
     json["fps"] = animation.fps;
     json["animation"] = animation.animation;
+    json["visibility"] = name_of(method.visibility);
     json["shading"] = method.shading;
     json["seed"] = method.seed;
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -201,7 +201,7 @@ void Renderer::render(const RenderSettings& settings, double number, RowSink& si
     Frame frame = pose_frame(scene_, view, animations, settings.shutter);
     frame.textures = textures_;
     const auto posed = Clock::now();
-    const SampleTable samples(settings.image.spp, settings.method.seed, view.lens, grouping_for(frame));
+    const SampleTable samples = make_samples(frame, settings.image.spp, settings.method);
     const auto sampled = Clock::now();
 
     const PixelRect crop = crop_of(settings.image);
