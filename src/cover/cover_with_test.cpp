@@ -20,6 +20,12 @@ std::size_t sample_offset(int px, int py, int slot, int slots) {
     return (static_cast<std::size_t>(block) * slots + slot) * kLanes + lane;
 }
 
+void record(CoverMap& map, int px, int py, bool hit) {
+    const std::size_t pixel = static_cast<std::size_t>(py) * map.width + px;
+    ++map.tested[pixel];
+    map.covered[pixel] += hit;
+}
+
 }  // namespace
 
 void cover_with_test(const TileWork& work, const CullTest& test, Hits& hits, CoverCounts& counts) {
@@ -33,12 +39,16 @@ void cover_with_test(const TileWork& work, const CullTest& test, Hits& hits, Cov
         const int x1 = std::min<int>(binned.x1, work.tile.x1), y1 = std::min<int>(binned.y1, work.tile.y1);
         for (int py = std::max<int>(binned.y0, work.tile.y0); py < y1; ++py)
             for (int px = std::max<int>(binned.x0, work.tile.x0); px < x1; ++px) {
+                ++counts.footprints;
                 if (!test.prepare(triangle, pixel_footprint(px, py, ratio), state)) continue;
+                ++counts.kept_footprints;
                 for (int index = 0; index < spp; ++index) {
                     const LocalSample sample = local_sample(work.samples.sample(px, py, index), px, py);
+                    ++counts.asked;
                     if (!test.keeps(state, sample)) continue;
                     ++counts.tested;
                     const SampleHit hit = cover_sample(triangle, sample, centre);
+                    if (work.map != nullptr) record(*work.map, px, py, hit.hit);
                     if (!hit.hit) continue;
                     ++counts.covered;
                     const std::size_t s = sample_offset(px, py, work.samples.slot_of(px, py, index), spp);

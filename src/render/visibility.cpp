@@ -32,9 +32,9 @@ Visibility::Visibility(const Frame& frame, const SampleTable& samples, const Met
             tiles_.push_back({x, y, std::min(x + size, limits.x1), std::min(y + size, limits.y1)});
 }
 
-void Visibility::cover(const Tile& tile, Hits& hits, CoverCounts& counts) const {
+void Visibility::cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map) const {
     hits.reset(samples_.slots());
-    const TileWork work{frame_, samples_, bins_.triangles(), bins_.tile(tile.x0, tile.y0), tile};
+    const TileWork work{frame_, samples_, bins_.triangles(), bins_.tile(tile.x0, tile.y0), tile, map};
     if (test_ != nullptr)
         cover_with_test(work, *test_, hits, counts);
     else

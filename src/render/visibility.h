@@ -18,8 +18,9 @@ class Visibility {
     /// Tiles that cover the limits, rows from top to bottom, each row from left to right.
     const std::vector<Tile>& tiles() const { return tiles_; }
 
-    /// Fills the tile's hits. Thread-safe: each caller brings its own Hits.
-    void cover(const Tile& tile, Hits& hits, CoverCounts& counts) const;
+    /// Fills the tile's hits. Thread-safe: each caller brings its own Hits and may share a map of the whole picture, in
+    /// which tiles write different pixels.
+    void cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map = nullptr) const;
 
     std::int64_t binned_triangles() const { return static_cast<std::int64_t>(bins_.triangles().size()); }
 
