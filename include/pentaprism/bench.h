@@ -32,9 +32,12 @@ struct BenchPlan {
     RenderSettings settings;           ///< image, method.seed, method.threads, animation; lens and shutter: see effects
     double frame = -1.0;               ///< below 0: 24 of a built-in scene, 0 of a file
     int runs = 5;                      ///< timed runs of each method, methods in turn; the median counts
-    double seconds = 4.0;           ///< a slower method gets fewer runs: as many as fit in these seconds, at least one
-    std::vector<int> peer_threads;  ///< Embree is timed with each of these numbers of threads (0: all); empty: not
-    bool images = true;             ///< pictures and heat maps, for report_html()
+    double seconds = 4.0;  ///< a slower method gets fewer runs: as many as fit in these seconds, at least one
+    std::int64_t most_tests = 64'000'000;  ///< where the bounding box alone would need more exact tests, a part of the
+                                           ///< picture's tiles is measured, the same with all methods; 0: no limit
+    std::vector<int> peer_threads;     ///< Embree is timed with each of these numbers of threads (0: all); empty: not
+    bool images = true;                ///< pictures and heat maps, for bench_html()
+    int map_width = 400, map_spp = 4;  ///< heat maps are made of smaller pictures, whole
 };
 BenchPlan full_bench_plan();   ///< 1024x768, 16 samples per pixel
 BenchPlan quick_bench_plan();  ///< small pictures of two scenes
@@ -45,17 +48,21 @@ std::vector<std::string> bench_default_scenes();
 /// One method on one frame. Times are wall times in milliseconds with all threads of the plan.
 struct BenchRow {
     std::string scene, effect, method, backend = "cpu";
-    bool conservative = true;      ///< the method promises to lose no sample
-    std::int64_t samples = 0;      ///< of the picture
-    std::int64_t tested = 0;       ///< exact 5D tests
-    std::int64_t covered = 0;      ///< of them accepted
-    std::int64_t false_culls = 0;  ///< samples whose triangle or depth differs, in any bit, from those of `none`
-    double setup_ms = 0.0;         ///< bounds, bins and all questions of the culling test, the exact tests left out; of
-                                   ///< `auto`, whose questions depend on depths, bounds and bins alone
-    double test_ms = 0.0;          ///< the rest: exact tests, depth, opacity
-    double frame_ms = 0.0;         ///< visibility of the whole frame, from posed triangles to the hit of every sample
-    int runs = 0;                  ///< timed runs behind the medians
-    double peak_mb = 0.0;  ///< largest resident memory while it ran, what the laboratory itself keeps not counted
+    bool conservative = true;  ///< the method promises to lose no sample
+    std::int64_t samples = 0;  ///< of the tiles that were measured (BenchCell::share)
+    std::int64_t tested = 0;   ///< exact 5D tests
+    std::int64_t covered = 0;  ///< of them accepted
+    std::int64_t footprints =
+        0;  ///< questions for all samples of a footprint: CullTest::prepare, which sets up the next
+    std::int64_t kept_footprints = 0;  ///< of them answered by "may be hit"
+    std::int64_t asked = 0;            ///< questions for single samples
+    std::int64_t false_culls = 0;      ///< samples whose triangle or depth differs, in any bit, from those of `none`
+    double setup_ms = 0.0;  ///< bounds, bins and all questions of the culling test, the exact tests left out; of
+                            ///< `auto`, whose questions depend on depths, bounds and bins alone
+    double test_ms = 0.0;   ///< the rest: exact tests, depth, opacity
+    double frame_ms = 0.0;  ///< visibility of the whole frame, from posed triangles to the hit of every sample
+    int runs = 0;           ///< timed runs behind the medians
+    double peak_mb = 0.0;   ///< largest resident memory while it ran, what the laboratory itself keeps not counted
 
     double ste() const { return tested > 0 ? static_cast<double>(covered) / static_cast<double>(tested) : 0.0; }
     double tests_per_covered() const {
@@ -91,6 +98,7 @@ struct BenchScene {
 /// What a frame looks like to a sample, in the mean over the samples that hit something.
 struct BenchCell {
     std::string scene, effect;
+    double share = 1.0;      ///< part of the picture's tiles that was measured
     double motion_px = 0.0;  ///< way of the surface over the open shutter, pixels
     double blur_px = 0.0;    ///< radius of its circle of confusion, pixels
     double hit = 0.0;        ///< part of the samples that hit something
@@ -109,6 +117,7 @@ struct BenchImage {
     BenchImageKind kind = BenchImageKind::kPicture;
     int width = 0, height = 0;
     double largest = 0.0;  ///< heat maps: the value of the hottest colour, tests a sample
+    double mean = 0.0;     ///< heat maps: the mean over the picture, tests a sample; kMissing: the part that is lost
     std::vector<std::uint8_t> png;
 };
 

@@ -270,13 +270,11 @@ std::string heat_maps(const BenchReport& report, const BenchScene& scene) {
                 wasted.effect == tested.effect && wasted.method == tested.method)
                 out += image_tag(wasted, tested.method + ": wasted tests");
         out += "</div><figcaption><b>" + escape_html(tested.method) + "</b>";
-        for (const BenchRow& row : report.rows)
-            if (row.scene == tested.scene && row.effect == tested.effect && row.method == tested.method)
-                out += fmt::format(
-                    ": {:.2f} tests a sample, {:.2f} of them wasted",
-                    static_cast<double>(row.tested) / static_cast<double>(std::max<std::int64_t>(1, row.samples)),
-                    static_cast<double>(row.tested - row.covered) /
-                        static_cast<double>(std::max<std::int64_t>(1, row.samples)));
+        out += fmt::format(": {:.2f} tests a sample", tested.mean);
+        for (const BenchImage& wasted : report.images)
+            if (wasted.kind == BenchImageKind::kWasted && wasted.scene == tested.scene &&
+                wasted.effect == tested.effect && wasted.method == tested.method)
+                out += fmt::format(", {:.2f} of them wasted", wasted.mean);
         out += "</figcaption></figure>\n";
     }
     if (out.empty()) return "";
@@ -295,15 +293,9 @@ std::string missing(const BenchReport& report, const BenchScene& scene) {
     std::string out;
     for (const BenchImage& image : report.images) {
         if (image.scene != scene.name || image.kind != BenchImageKind::kMissing) continue;
-        std::int64_t lost = 0, samples = 1;
-        for (const BenchRow& row : report.rows)
-            if (row.scene == image.scene && row.effect == image.effect && row.method == image.method)
-                lost = row.false_culls, samples = std::max<std::int64_t>(1, row.samples);
-        out +=
-            "<figure>" + image_tag(image, image.method + ": lost samples") +
-            fmt::format("<figcaption><b>{}</b>, {}: {} samples lost, {:.2f} % of the picture's</figcaption></figure>\n",
-                        escape_html(image.method), image.effect, grouped(lost),
-                        100.0 * static_cast<double>(lost) / static_cast<double>(samples));
+        out += "<figure>" + image_tag(image, image.method + ": lost samples") +
+               fmt::format("<figcaption><b>{}</b>, {}: {:.2f} % of the samples lost</figcaption></figure>\n",
+                           escape_html(image.method), image.effect, 100.0 * image.mean);
     }
     if (out.empty()) return "";
     return "<h3>What is lost by tests as printed</h3>\n<p class=\"small soft\">Red: samples whose hit is missing or is "
@@ -439,7 +431,8 @@ std::string all_rows(const BenchReport& report, const Lookup& lookup) {
 constexpr const char* kHow = R"html(<h2 id="method">How it was measured</h2>
 <p><b>Effects.</b> still: no motion, a pinhole. motion and defocus: the scene's own shutter and lens. x2: the shutter is open twice as long, the
 lens has twice the radius.</p>
-<p><b>Counts</b> come from one run of each method over the whole picture. tests: exact 5D tests of one sample against one triangle; a hit is one
+<p><b>Counts</b> come from one run of each method. Where the bounding box alone would need very many tests, a part of the picture's tiles is
+measured, spread evenly, the same ones with every method; times are then those of the tiles over that part. tests: exact 5D tests of one sample against one triangle; a hit is one
 that accepts, whether or not something nearer hides it. lost: samples whose visible triangle or depth differs in any bit from those without
 culling (<i>none</i>, the bounding box alone).</p>
 <p><b>Times</b> are medians of runs in which all methods take turns, wall times with all threads. frame: from posed triangles to the visible

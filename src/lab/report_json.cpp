@@ -29,6 +29,9 @@ Json to_json(const BenchRow& r) {
             {"tested", r.tested},
             {"covered", r.covered},
             {"tests_per_covered", r.tests_per_covered()},
+            {"footprints", r.footprints},
+            {"kept_footprints", r.kept_footprints},
+            {"asked", r.asked},
             {"false_culls", r.false_culls},
             {"setup_ms", r.setup_ms},
             {"test_ms", r.test_ms},
@@ -57,8 +60,8 @@ Json to_json(const BenchScene& s) {
 }
 
 Json to_json(const BenchCell& c) {
-    return {
-        {"scene", c.scene}, {"effect", c.effect}, {"motion_px", c.motion_px}, {"blur_px", c.blur_px}, {"hit", c.hit}};
+    return {{"scene", c.scene},         {"effect", c.effect},   {"share", c.share},
+            {"motion_px", c.motion_px}, {"blur_px", c.blur_px}, {"hit", c.hit}};
 }
 
 template <class T>

@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "lab/effects.h"
+#include "lab/images.h"
 #include "lab/machine.h"
 #include "lab/measure.h"
 
@@ -86,24 +87,52 @@ class Laboratory {
 
     void run_effect(const Scene& scene, const RenderSettings& settings, double frame, const BenchEffect& effect) {
         const std::string place = short_name(scene.name) + " " + effect.name;
+        const KeepGoing keep_going = [&](const std::string& what) {
+            return !progress_ || progress_(step(place + ", " + what));
+        };
         tell(place + ": posing");
         set_thread_count(settings.method.threads);
         const PosedPicture picture = pose_picture(scene, settings, frame);
-        MeasureOptions options;
-        options.methods = methods_;
-        options.method = settings.method;
-        options.runs = plan_.runs;
-        options.seconds = plan_.seconds;
-        BenchCell cell{scene.name, effect.name};
-        std::vector<BenchRow> rows = measure_methods(picture, options, cell, [&](const std::string& what) {
-            return !progress_ || progress_(step(place + ", " + what));
-        });
-        report_.cells.push_back(cell);
-        for (BenchRow& row : rows) {
+        Measurements measured = measure_methods(
+            picture, {methods_, settings.method, plan_.most_tests, plan_.runs, plan_.seconds}, keep_going);
+        measured.cell.scene = scene.name;
+        measured.cell.effect = effect.name;
+        report_.cells.push_back(measured.cell);
+        for (BenchRow& row : measured.rows) {
             row.scene = scene.name;
             row.effect = effect.name;
             report_.rows.push_back(std::move(row));
         }
+        if (!plan_.images) return;
+        tell(place + ": rendering the picture");
+        RenderStats stats;
+        const Picture rendered = render_picture(scene, settings, frame, stats);
+        report_.images.push_back(picture_image(rendered, scene.name, effect.name));
+        if (effect.name == map_effect()) make_maps(scene, settings, frame, effect, keep_going);
+    }
+
+    void make_maps(const Scene& scene, RenderSettings settings, double frame, const BenchEffect& effect,
+                   const KeepGoing& keep_going) {
+        ImageSettings& image = settings.image;
+        const int width = std::min(image.width, plan_.map_width);
+        image.height = std::max(1, image.height * width / image.width);
+        image.width = width;
+        image.spp = plan_.map_spp;
+        const PosedPicture picture = pose_picture(scene, settings, frame);
+        Walk walk(picture, settings.method, 0, keep_going);
+        walk.make_reference();
+        std::vector<MethodMap> maps(methods_.size());
+        for (std::size_t i = 0; i < methods_.size(); ++i) walk.count(methods_[i], &maps[i]);
+        RenderStats stats;
+        const Picture rendered = render_picture(scene, settings, frame, stats);
+        add_map_images(maps, rendered, image.spp, scene.name, effect.name, report_.images);
+    }
+
+    // Heat maps are made of one effect: both blurs, or the last that is measured.
+    const std::string& map_effect() const {
+        for (const BenchEffect& effect : effects_)
+            if (effect.name == "both") return effect.name;
+        return effects_.back().name;
     }
 
     void time_peers(const Scene& scene, RenderSettings settings, double frame, const BenchEffect& effect) {
@@ -159,10 +188,13 @@ BenchPlan full_bench_plan() {
 BenchPlan quick_bench_plan() {
     BenchPlan plan;
     plan.scenes = {"builtin:hand", "builtin:car"};
-    plan.settings.image.width = 192;
-    plan.settings.image.height = 144;
+    plan.settings.image.width = 320;
+    plan.settings.image.height = 240;
     plan.runs = 3;
     plan.seconds = 0.1;
+    plan.most_tests = 2'000'000;
+    plan.map_width = 160;
+    plan.map_spp = 2;
     return plan;
 }
 
