@@ -83,11 +83,18 @@ struct Picture {
 };
 Picture render_picture(const Scene& scene, const RenderSettings& settings, double frame, RenderStats& stats);
 
-/// Names for `--culling`: "auto" first, then each culling test, with one line on what it is.
+/// One name for `--culling`: a test, where it comes from, and the footprint it is asked at unless the user says
+/// another: "tile" (8x8 pixels), "pixel", or "bucket" (a stratum of the samples of 4x4 pixels).
 struct CullingChoice {
-    std::string name, description;
+    std::string name, description, footprint;
+    bool conservative = true;  ///< false: as a paper prints it; loses samples, kept to be measured
 };
+/// "auto" first, then each culling test. MethodSettings::culling is "auto" or a combination of the others,
+/// `TEST[@FOOTPRINT]` joined by `+`.
 std::vector<CullingChoice> culling_tests();
+
+/// Throws Error(kUsage) if MethodSettings::culling could not be that.
+void check_culling(const std::string& culling);
 
 /// The CPU target in use: avx512, avx2, neon or scalar (the environment's PENTAPRISM_ISA, else the best there is).
 /// Throws Error(kUsage) if the environment names a target that this processor or build does not have.

@@ -51,7 +51,7 @@ struct AnimationSettings {
 };
 
 struct MethodSettings {
-    std::string culling = "auto";   ///< a name of culling_tests()
+    std::string culling = "auto";   ///< "auto" or a combination of culling_tests()
     std::string shading = "pixel";  ///< how often visible surfaces are shaded
     std::uint32_t seed = 0;         ///< of the sample pattern
     int threads = 0;                ///< 0: all processors

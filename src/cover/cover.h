@@ -8,7 +8,7 @@
 
 #include "bin/bins.h"
 #include "cover/hits.h"
-#include "cull/cull_test.h"
+#include "cull/cull_choice.h"
 #include "sample/sample_table.h"
 
 namespace pentaprism {
@@ -45,7 +45,10 @@ struct CoverCounts {
     }
 };
 
-/// `hits` must be reset. Walks pixel by pixel: the culling test's footprint is one pixel with all of lens and shutter.
+/// `hits` must be reset. Walks sample by sample and asks each step of the culling about its own footprints.
+void cover_with_test(const TileWork& work, const Culling& culling, Hits& hits, CoverCounts& counts);
+
+/// The same with one test at its own footprint.
 void cover_with_test(const TileWork& work, const CullTest& test, Hits& hits, CoverCounts& counts);
 
 /// The fast path of `--culling auto`, on the CPU target in use (base/cpu.h). Equals cover_with_test with any test.

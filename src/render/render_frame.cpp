@@ -249,9 +249,15 @@ Picture render_picture(const Scene& scene, const RenderSettings& settings, doubl
 }
 
 std::vector<CullingChoice> culling_tests() {
-    std::vector<CullingChoice> choices{{"auto", "vectors of samples, strata bounds, depth hierarchy: the fast path"}};
-    for (const CullTest* test : cull_table()) choices.push_back({test->name, test->paper});
+    std::vector<CullingChoice> choices{
+        {"auto", "vectors of samples, strata bounds, depth hierarchy: the fast path", "bucket"}};
+    for (const CullTest* test : cull_table())
+        choices.push_back({test->name, test->paper, name_of(test->grain), test->conservative});
     return choices;
+}
+
+void check_culling(const std::string& culling) {
+    if (culling != "auto") parse_culling(culling);
 }
 
 std::string cpu_target() {

@@ -1,21 +1,8 @@
 #include "render/visibility.h"
 
 #include <algorithm>
-#include <pentaprism/error.h>
 
 namespace pentaprism {
-namespace {
-
-const CullTest* choose_test(const std::string& name) {
-    if (name == "auto") return nullptr;
-    if (const CullTest* test = find_cull_test(name)) return test;
-    std::string names = "auto";
-    for (const CullTest* test : cull_table()) names += std::string(", ") + test->name;
-    throw Error(ErrorKind::kUsage, "no culling test '" + name + "'; there are: " + names);
-}
-
-}  // namespace
-
 Grouping grouping_for(const Frame& frame) {
     const bool motion =
         std::any_of(frame.parts.begin(), frame.parts.end(), [](const Part& part) { return part.moves; });
@@ -25,7 +12,10 @@ Grouping grouping_for(const Frame& frame) {
 
 Visibility::Visibility(const Frame& frame, const SampleTable& samples, const MethodSettings& method,
                        const PixelRect& limits)
-    : frame_(frame), samples_(samples), test_(choose_test(method.culling)), bins_(frame, method.tile_size, limits) {
+    : frame_(frame),
+      samples_(samples),
+      culling_(method.culling == "auto" ? Culling() : parse_culling(method.culling)),
+      bins_(frame, method.tile_size, limits) {
     const int size = method.tile_size;
     for (int y = limits.y0 / size * size; y < limits.y1; y += size)
         for (int x = limits.x0 / size * size; x < limits.x1; x += size)
@@ -35,8 +25,8 @@ Visibility::Visibility(const Frame& frame, const SampleTable& samples, const Met
 void Visibility::cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map) const {
     hits.reset(samples_.slots());
     const TileWork work{frame_, samples_, bins_.triangles(), bins_.tile(tile.x0, tile.y0), tile, map};
-    if (test_ != nullptr)
-        cover_with_test(work, *test_, hits, counts);
+    if (!culling_.empty())
+        cover_with_test(work, culling_, hits, counts);
     else
         cover_vectors(work, hits, counts);
 }

@@ -27,7 +27,7 @@ class Visibility {
   private:
     const Frame& frame_;
     const SampleTable& samples_;
-    const CullTest* test_;  ///< nullptr: the fast path
+    Culling culling_;  ///< empty: the fast path
     Bins bins_;
     std::vector<Tile> tiles_;
 };
