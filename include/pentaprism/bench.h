@@ -21,14 +21,14 @@ struct BenchEffect {
 /// still, motion, motion-x2, defocus, defocus-x2, both, both-x2.
 std::vector<BenchEffect> bench_effects();
 
-/// What can be measured, in this order: "auto" and each culling test, as culling_tests() names them.
+/// What is measured unless said otherwise: "auto" and each of culling_tests() by itself.
 std::vector<std::string> bench_methods();
 
 /// What to measure. A scene without a lens of its own gets f/2.8, one without a shutter half a frame.
 struct BenchPlan {
     std::vector<std::string> scenes;   ///< as load_scene() takes them; empty: bench_default_scenes()
     std::vector<std::string> effects;  ///< names of bench_effects(); empty: all
-    std::vector<std::string> methods;  ///< names of bench_methods(); empty: all
+    std::vector<std::string> methods;  ///< values of MethodSettings::culling; empty: bench_methods()
     RenderSettings settings;           ///< image, method.seed, method.threads, animation; lens and shutter: see effects
     double frame = -1.0;               ///< below 0: 24 of a built-in scene, 0 of a file
     int runs = 5;                      ///< timed runs of each method, methods in turn; the median counts

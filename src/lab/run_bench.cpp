@@ -26,13 +26,8 @@ std::vector<BenchEffect> chosen_effects(const BenchPlan& plan) {
 }
 
 std::vector<std::string> chosen_methods(const BenchPlan& plan) {
-    const std::vector<std::string> all = bench_methods();
-    if (plan.methods.empty()) return all;
-    std::string names;
-    for (const std::string& name : all) names += (names.empty() ? "" : ", ") + name;
-    for (const std::string& method : plan.methods)
-        if (std::find(all.begin(), all.end(), method) == all.end())
-            throw Error(ErrorKind::kUsage, "there is no method '" + method + "'; there are: " + names);
+    if (plan.methods.empty()) return bench_methods();
+    for (const std::string& method : plan.methods) check_culling(method);
     return plan.methods;
 }
 
@@ -119,7 +114,7 @@ class Laboratory {
         image.width = width;
         image.spp = plan_.map_spp;
         const PosedPicture picture = pose_picture(scene, settings, frame);
-        Walk walk(picture, settings.method, 0, keep_going);
+        FrameWalk walk(picture, settings.method, 0, keep_going);
         walk.make_reference();
         std::vector<MethodMap> maps(methods_.size());
         for (std::size_t i = 0; i < methods_.size(); ++i) walk.count(methods_[i], &maps[i]);
@@ -188,11 +183,13 @@ BenchPlan full_bench_plan() {
 BenchPlan quick_bench_plan() {
     BenchPlan plan;
     plan.scenes = {"builtin:hand", "builtin:car"};
-    plan.settings.image.width = 320;
-    plan.settings.image.height = 240;
+    plan.settings.image.width = 160;
+    plan.settings.image.height = 120;
+    plan.settings.image.spp = 4;
+    plan.settings.method.tile_size = 16;
     plan.runs = 3;
-    plan.seconds = 0.1;
-    plan.most_tests = 2'000'000;
+    plan.seconds = 0.05;
+    plan.most_tests = 1'000'000;
     plan.map_width = 160;
     plan.map_spp = 2;
     return plan;
