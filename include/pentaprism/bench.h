@@ -35,9 +35,10 @@ struct BenchPlan {
     double seconds = 4.0;  ///< a slower method gets fewer runs: as many as fit in these seconds, at least one
     std::int64_t most_tests = 64'000'000;  ///< where the bounding box alone would need more exact tests, a part of the
                                            ///< picture's tiles is measured, the same with all methods; 0: no limit
-    std::vector<int> peer_threads;     ///< Embree is timed with each of these numbers of threads (0: all); empty: not
-    bool images = true;                ///< pictures and heat maps, for bench_html()
-    int map_width = 400, map_spp = 4;  ///< heat maps are made of smaller pictures, whole
+    std::vector<int> peer_threads;  ///< Embree is timed with each of these numbers of threads (0: all); empty: not
+    bool images = true;             ///< pictures and heat maps, for bench_html()
+    int picture_width = 512, picture_spp = 32;  ///< of the frames that are shown
+    int map_width = 400, map_spp = 4;           ///< heat maps are made of smaller pictures, whole
 };
 BenchPlan full_bench_plan();   ///< 1024x768, 16 samples per pixel
 BenchPlan quick_bench_plan();  ///< small pictures of two scenes

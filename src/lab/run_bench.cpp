@@ -101,18 +101,24 @@ class Laboratory {
         if (!plan_.images) return;
         tell(place + ": rendering the picture");
         RenderStats stats;
-        const Picture rendered = render_picture(scene, settings, frame, stats);
+        const Picture rendered =
+            render_picture(scene, resized(settings, plan_.picture_width, plan_.picture_spp), frame, stats);
         report_.images.push_back(picture_image(rendered, scene.name, effect.name));
         if (effect.name == map_effect()) make_maps(scene, settings, frame, effect, keep_going);
     }
 
-    void make_maps(const Scene& scene, RenderSettings settings, double frame, const BenchEffect& effect,
-                   const KeepGoing& keep_going) {
+    static RenderSettings resized(RenderSettings settings, int width, int spp) {
         ImageSettings& image = settings.image;
-        const int width = std::min(image.width, plan_.map_width);
         image.height = std::max(1, image.height * width / image.width);
         image.width = width;
-        image.spp = plan_.map_spp;
+        image.spp = spp;
+        return settings;
+    }
+
+    void make_maps(const Scene& scene, const RenderSettings& as_measured, double frame, const BenchEffect& effect,
+                   const KeepGoing& keep_going) {
+        const RenderSettings settings =
+            resized(as_measured, std::min(as_measured.image.width, plan_.map_width), plan_.map_spp);
         const PosedPicture picture = pose_picture(scene, settings, frame);
         FrameWalk walk(picture, settings.method, 0, keep_going);
         walk.make_reference();
@@ -120,7 +126,7 @@ class Laboratory {
         for (std::size_t i = 0; i < methods_.size(); ++i) walk.count(methods_[i], &maps[i]);
         RenderStats stats;
         const Picture rendered = render_picture(scene, settings, frame, stats);
-        add_map_images(maps, rendered, image.spp, scene.name, effect.name, report_.images);
+        add_map_images(maps, rendered, plan_.map_spp, scene.name, effect.name, report_.images);
     }
 
     // Heat maps are made of one effect: both blurs, or the last that is measured.
@@ -190,6 +196,8 @@ BenchPlan quick_bench_plan() {
     plan.runs = 3;
     plan.seconds = 0.05;
     plan.most_tests = 1'000'000;
+    plan.picture_width = 320;
+    plan.picture_spp = 16;
     plan.map_width = 160;
     plan.map_spp = 2;
     return plan;
