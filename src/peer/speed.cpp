@@ -14,7 +14,7 @@
 #include "render/visibility.h"
 
 #ifdef PENTAPRISM_HAVE_EMBREE
-#include "peer/embree_reference.h"
+#include "trace/embree_tracer.h"
 #endif
 
 namespace pentaprism {
@@ -67,9 +67,9 @@ class Contest {
     /// After run_ours(), which says what the tiles are.
     EmbreeTimes run_embree(const EmbreeOptions& options) {
         EmbreeTimes times;
-        std::unique_ptr<EmbreeReference> embree;
-        times.build_ms = milliseconds(
-            [&] { embree = std::make_unique<EmbreeReference>(picture_.frame, picture_.samples, options); });
+        std::unique_ptr<EmbreeTracer> embree;
+        times.build_ms =
+            milliseconds([&] { embree = std::make_unique<EmbreeTracer>(picture_.frame, picture_.samples, options); });
         times.trace_ms = milliseconds([&] {
             trace_picture(tiles_, [&](const Tile& tile, Hits& hits) {
                 hits.reset(picture_.samples.slots());
