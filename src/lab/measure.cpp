@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "cull/cull_choice.h"
 #include "lab/machine.h"
 
 namespace pentaprism {
@@ -16,11 +17,12 @@ double median(std::vector<double> values) {
     return n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
 }
 
-BenchRow counted_row(Walk& walk, const std::string& method) {
+BenchRow counted_row(FrameWalk& walk, const std::string& method) {
     reset_peak_memory();
-    const Walk::Counts counts = walk.count(method, nullptr);
+    const FrameWalk::Counts counts = walk.count(method, nullptr);
     BenchRow row;
     row.method = method;
+    row.conservative = method == "auto" || is_conservative(parse_culling(method));
     row.samples = walk.samples();
     row.tested = counts.cover.tested;
     row.covered = counts.cover.covered;
@@ -40,7 +42,7 @@ struct Times {
 }  // namespace
 
 Measurements measure_methods(const PosedPicture& picture, const MeasureOptions& options, const KeepGoing& keep_going) {
-    Walk walk(picture, options.method, options.most_tests, keep_going);
+    FrameWalk walk(picture, options.method, options.most_tests, keep_going);
     walk.make_reference();
     Measurements result;
     result.cell = walk.describe();

@@ -22,17 +22,22 @@ double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-// The test that a walk without exact tests asks before it refuses; one walk at a time.
-const CullTest* asked_test = nullptr;
-
-bool prepare_asked(const LocalTriangle& triangle, const Footprint& footprint, CullState& state) {
-    return asked_test->prepare(triangle, footprint, state);
+bool prepare_nothing(const LocalTriangle&, const Footprint&, CullState&) {
+    return true;
 }
-bool ask_and_refuse(const CullState& state, const LocalSample& sample) {
-    asked_test->keeps(state, sample);
+bool refuse(const CullState&, const LocalSample&) {
     return false;
 }
-constexpr CullTest kRefuse{"refuse", "", prepare_asked, ask_and_refuse};
+constexpr CullTest kRefuse{"refuse", "", prepare_nothing, refuse};
+
+// The culling with a last step that refuses every sample: asked when all others have kept it, at the finest of their
+// footprints, so that it adds no other.
+Culling refusing(Culling culling) {
+    Grain finest = Grain::kTile;
+    for (const CullStep& step : culling) finest = std::max(finest, step.grain);
+    culling.push_back({&kRefuse, finest});
+    return culling;
+}
 
 PixelRect whole(const PosedPicture& picture) {
     return {0, picture.frame.view.width, 0, picture.frame.view.height};
@@ -92,12 +97,13 @@ Seen middle_at(const Frame& frame, std::uint32_t triangle, int knot) {
 
 }  // namespace
 
-Walk::Walk(const PosedPicture& picture, const MethodSettings& settings, std::int64_t most_tests, KeepGoing keep_going)
+FrameWalk::FrameWalk(const PosedPicture& picture, const MethodSettings& settings, std::int64_t most_tests,
+                     KeepGoing keep_going)
     : picture_(picture), settings_(settings), keep_going_(std::move(keep_going)) {
     choose_tiles(most_tests);
 }
 
-void Walk::choose_tiles(std::int64_t most_tests) {
+void FrameWalk::choose_tiles(std::int64_t most_tests) {
     tiles_ = visibility_of("none").tiles();
     if (most_tests <= 0) return;
     const Bins bins(picture_.frame, settings_.tile_size, whole(picture_));
@@ -118,13 +124,13 @@ void Walk::choose_tiles(std::int64_t most_tests) {
     share_ = static_cast<double>(tiles_.size()) / all;
 }
 
-Visibility Walk::visibility_of(const std::string& method) const {
+Visibility FrameWalk::visibility_of(const std::string& method) const {
     MethodSettings settings = settings_;
     settings.culling = method;
     return Visibility(picture_.frame, picture_.samples, settings, whole(picture_));
 }
 
-double Walk::for_each_tile(const std::string& what, const TileWorkBody& body) {
+double FrameWalk::for_each_tile(const std::string& what, const TileWorkBody& body) {
     const auto start = Clock::now();
     std::atomic<bool> stopped{false};
     std::mutex one_at_a_time;
@@ -139,13 +145,13 @@ double Walk::for_each_tile(const std::string& what, const TileWorkBody& body) {
     return milliseconds_since(start) / share_;
 }
 
-std::int64_t Walk::samples() const {
+std::int64_t FrameWalk::samples() const {
     std::int64_t pixels = 0;
     for (const Tile& tile : tiles_) pixels += std::int64_t{tile.x1 - tile.x0} * (tile.y1 - tile.y0);
     return pixels * picture_.samples.spp();
 }
 
-void Walk::make_reference() {
+void FrameWalk::make_reference() {
     const Visibility visibility = visibility_of("none");
     reference_.resize(tiles_.size());
     for_each_tile("none: the reference", [&](std::size_t i, Hits&) {
@@ -154,14 +160,14 @@ void Walk::make_reference() {
     });
 }
 
-std::int64_t Walk::reference_bytes() const {
+std::int64_t FrameWalk::reference_bytes() const {
     std::size_t bytes = 0;
     for (const Hits& hits : reference_)
         bytes += hits.depth.capacity() * sizeof(float) + hits.triangle.capacity() * sizeof(std::uint32_t);
     return static_cast<std::int64_t>(bytes);
 }
 
-Walk::Counts Walk::count(const std::string& method, MethodMap* map) {
+FrameWalk::Counts FrameWalk::count(const std::string& method, MethodMap* map) {
     const View& view = picture_.frame.view;
     const int slots = picture_.samples.slots();
     if (map != nullptr) {
@@ -192,7 +198,7 @@ Walk::Counts Walk::count(const std::string& method, MethodMap* map) {
     return result;
 }
 
-double Walk::time_frame(const std::string& method) {
+double FrameWalk::time_frame(const std::string& method) {
     const auto start = Clock::now();
     const Visibility visibility = visibility_of(method);
     const double bins_ms = milliseconds_since(start);
@@ -202,43 +208,54 @@ double Walk::time_frame(const std::string& method) {
            });
 }
 
-double Walk::time_setup(const std::string& method) {
+double FrameWalk::time_setup(const std::string& method) {
     const auto start = Clock::now();
     const Bins bins(picture_.frame, settings_.tile_size, whole(picture_));
     const double bins_ms = milliseconds_since(start);
-    asked_test = find_cull_test(method);
-    if (asked_test == nullptr) return bins_ms;
+    if (method == "auto") return bins_ms;
+    const Culling culling = refusing(parse_culling(method));
     return bins_ms + for_each_tile(method + ": timing its questions", [&](std::size_t i, Hits& hits) {
                const Tile& tile = tiles_[i];
                hits.reset(picture_.samples.slots());
                CoverCounts counts;
                cover_with_test(
                    {picture_.frame, picture_.samples, bins.triangles(), bins.tile(tile.x0, tile.y0), tile, nullptr},
-                   kRefuse, hits, counts);
+                   culling, hits, counts);
            });
 }
 
-BenchCell Walk::describe() const {
-    BenchCell cell;
-    double samples = 0, hits = 0;
+BenchCell FrameWalk::describe() {
+    struct Sums {
+        double samples = 0, hits = 0, motion = 0, blur = 0;
+    };
     const Frame& frame = picture_.frame;
-    for (std::size_t i = 0; i < tiles_.size(); ++i)
-        for_each_sample(tiles_[i], picture_.samples.slots(), [&](int px, int py, std::size_t s) {
+    const Visibility visibility = visibility_of("auto");
+    const std::vector<Tile>& all = visibility.tiles();
+    std::vector<Sums> sums(all.size());  // added up in the order of tiles, so that the result is always the same
+    parallel_for(all.size(), [&](std::size_t i) {
+        const auto hits = buffers_.lease();
+        CoverCounts counts;
+        visibility.cover(all[i], *hits, counts);
+        for_each_sample(all[i], picture_.samples.slots(), [&](int px, int py, std::size_t s) {
             if ((px + py) % 4 != 0) return;  // a quarter of the pixels says as much
-            ++samples;
-            const std::uint32_t triangle = reference_[i].triangle[s];
+            ++sums[i].samples;
+            const std::uint32_t triangle = hits->triangle[s];
             if (triangle == kNoTriangle) return;
-            ++hits;
+            ++sums[i].hits;
             const Seen open = middle_at(frame, triangle, 0),
                        close = middle_at(frame, triangle, frame.parts[frame.part_of[triangle]].segments);
-            cell.motion_px += std::hypot(close.x - open.x, close.y - open.y);
-            cell.blur_px += 0.5 * (open.radius + close.radius);
+            sums[i].motion += std::hypot(close.x - open.x, close.y - open.y);
+            sums[i].blur += 0.5 * (open.radius + close.radius);
         });
+    });
+    Sums sum;
+    for (const Sums& s : sums) sum.samples += s.samples, sum.hits += s.hits, sum.motion += s.motion, sum.blur += s.blur;
+    BenchCell cell;
     cell.share = share_;
-    if (hits > 0) {
-        cell.motion_px /= hits;
-        cell.blur_px /= hits;
-        cell.hit = hits / samples;
+    if (sum.hits > 0) {
+        cell.motion_px = sum.motion / sum.hits;
+        cell.blur_px = sum.blur / sum.hits;
+        cell.hit = sum.hits / sum.samples;
     }
     return cell;
 }

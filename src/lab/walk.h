@@ -21,11 +21,12 @@ struct MethodMap {
     std::vector<std::uint32_t> lost;
 };
 
-class Walk {
+class FrameWalk {
   public:
     /// `picture` must outlive the walk. Of a picture on which the bounding box alone would need more than `most_tests`
     /// exact tests, only as many tiles are walked as need about so many, spread evenly; 0: no limit.
-    Walk(const PosedPicture& picture, const MethodSettings& settings, std::int64_t most_tests, KeepGoing keep_going);
+    FrameWalk(const PosedPicture& picture, const MethodSettings& settings, std::int64_t most_tests,
+              KeepGoing keep_going);
 
     /// Part of the picture's tiles that is walked.
     double share() const { return share_; }
@@ -33,7 +34,7 @@ class Walk {
     /// Samples of the tiles that are walked.
     std::int64_t samples() const;
 
-    /// Keeps the hits of `none`. Before count() and describe().
+    /// Keeps the hits of `none`. Before count().
     void make_reference();
     std::int64_t reference_bytes() const;
 
@@ -51,8 +52,8 @@ class Walk {
     /// The same of all that comes before exact tests (BenchRow::setup_ms).
     double time_setup(const std::string& method);
 
-    /// Motion, blur and coverage, from the reference.
-    BenchCell describe() const;
+    /// Motion, blur and coverage of the whole picture.
+    BenchCell describe();
 
   private:
     using TileWorkBody = std::function<void(std::size_t i, Hits& hits)>;
