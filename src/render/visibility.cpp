@@ -55,7 +55,9 @@ void Visibility::cover(const Tile& tile, Hits& hits, CoverCounts& counts) const 
     hits.reset(samples_.slots());
     if (tracer_) return tracer_->trace(tile, hits);
     const TileWork work{frame_, samples_, bins_->triangles(), bins_->tile(tile.x0, tile.y0), tile};
-    if (test_ != nullptr)
+    if (method_ == VisibilityMethod::kMicropolygon)
+        cover_micropolygons(work, hits, counts);
+    else if (test_ != nullptr)
         cover_with_test(work, *test_, hits, counts);
     else if (samples_.pattern() != SamplePattern::kFree)
         cover_shared(work, hits, counts);
