@@ -61,6 +61,11 @@ void strata_boxes(const Micropolygon& micro, std::span<const Domain> domains, Lo
         const Vec segments = hn::Set(f, T.segments), segment = hn::Set(f, -T.segment);
         const Vec tau0 = hn::Max(hn::MulAdd(hn::Load(f, t0), segments, segment), hn::Zero(f));
         const Vec tau1 = hn::Min(hn::MulAdd(hn::Load(f, t1), segments, segment), hn::Set(f, 1.0f));
+        const Mask outside = hn::Gt(tau0, tau1);
+        if (hn::AllTrue(f, outside)) {
+            for (std::size_t k = first; k < std::min(first + lanes, domains.size()); ++k) boxes[k] = {1, -1, 1, -1};
+            continue;
+        }
         Vec x0 = hn::Set(f, INFINITY), x1 = hn::Set(f, -INFINITY), y0 = x0, y1 = x1;
         for (int end = 0; end < 2; ++end) {
             const Vec tau = end == 0 ? tau0 : tau1;
@@ -78,7 +83,7 @@ void strata_boxes(const Micropolygon& micro, std::span<const Domain> domains, Lo
         }
         x0 = hn::Add(x0, hn::Set(f, slack.x0)), x1 = hn::Add(x1, hn::Set(f, slack.x1));
         y0 = hn::Add(y0, hn::Set(f, slack.y0)), y1 = hn::Add(y1, hn::Set(f, slack.y1));
-        x0 = hn::IfThenElse(hn::Gt(tau0, tau1), hn::Set(f, INFINITY), x0);
+        x0 = hn::IfThenElse(outside, hn::Set(f, INFINITY), x0);
         hn::Store(hn::Max(x0, hn::Set(f, micro.box.x0)), f, bx0);
         hn::Store(hn::Min(x1, hn::Set(f, micro.box.x1)), f, bx1);
         hn::Store(hn::Max(y0, hn::Set(f, micro.box.y0)), f, by0);
@@ -95,8 +100,7 @@ HWY_INLINE Vec edge(const Vec x[3], const Vec y[3], int i, int j) {
 }
 
 // Samples that are not outside any edge, by the numbers of the exact test.
-HWY_INLINE Mask not_outside(F f, const LocalTriangle& T, const SampleVector& s, int lane, Vec hx, Vec hy) {
-    const Vec tau = hn::MulAdd(hn::Load(f, s.t + lane), hn::Set(f, T.segments), hn::Set(f, -T.segment));
+HWY_INLINE Mask not_outside(F f, const LocalTriangle& T, const SampleVector& s, int lane, Vec hx, Vec hy, Vec tau) {
     const Vec u = hn::Load(f, s.u + lane), v = hn::Load(f, s.v + lane), zero = hn::Zero(f);
     Vec x[3], y[3];
     for (int k = 0; k < 3; ++k) {
@@ -121,11 +125,14 @@ std::int64_t find_lanes(const LocalTriangle& T, const SampleVector* samples, con
         std::uint32_t found = 0;
         for (int lane = 0; lane < kLanes; lane += static_cast<int>(hn::Lanes(f))) {
             const Vec hx = hn::Load(f, s.x + lane), hy = hn::Load(f, s.y + lane);
-            const Mask inside = hn::And(hn::And(hn::Ge(hx, hn::Set(f, box.x0)), hn::Le(hx, hn::Set(f, box.x1))),
-                                        hn::And(hn::Ge(hy, hn::Set(f, box.y0)), hn::Le(hy, hn::Set(f, box.y1))));
+            Mask inside = hn::And(hn::And(hn::Ge(hx, hn::Set(f, box.x0)), hn::Le(hx, hn::Set(f, box.x1))),
+                                  hn::And(hn::Ge(hy, hn::Set(f, box.y0)), hn::Le(hy, hn::Set(f, box.y1))));
+            if (hn::AllFalse(f, inside)) continue;
+            const Vec tau = hn::MulAdd(hn::Load(f, s.t + lane), hn::Set(f, T.segments), hn::Set(f, -T.segment));
+            inside = hn::And(inside, hn::And(hn::Ge(tau, hn::Zero(f)), hn::Lt(tau, hn::Set(f, 1.0f))));
             if (hn::AllFalse(f, inside)) continue;
             tested += static_cast<std::int64_t>(hn::CountTrue(f, inside));
-            const Mask kept = hn::And(inside, not_outside(f, T, s, lane, hx, hy));
+            const Mask kept = hn::And(inside, not_outside(f, T, s, lane, hx, hy, tau));
             std::uint8_t bits[8] = {};
             hn::StoreMaskBits(f, kept, bits);
             found |= (bits[0] | static_cast<std::uint32_t>(bits[1]) << 8) << lane;
@@ -147,18 +154,21 @@ namespace {
 void whole_boxes(const Micropolygon& micro, std::span<const Domain> domains, LocalBox* boxes) {
     std::fill(boxes, boxes + domains.size(), micro.box);
 }
-std::int64_t lanes_in_box(const LocalTriangle&, const SampleVector* samples, const LocalBox* boxes,
+std::int64_t lanes_in_box(const LocalTriangle& T, const SampleVector* samples, const LocalBox* boxes,
                           std::span<MicroJob> jobs) {
     std::int64_t tested = 0;
     for (MicroJob& job : jobs) {
         const SampleVector& s = samples[job.vector];
         const LocalBox& box = boxes[job.stratum];
         job.lanes = 0;
-        for (int lane = 0; lane < kLanes; ++lane)
-            if (s.x[lane] >= box.x0 && s.x[lane] <= box.x1 && s.y[lane] >= box.y0 && s.y[lane] <= box.y1) {
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const float tau = std::fma(s.t[lane], T.segments, -T.segment);
+            if (tau >= 0.0f && tau < 1.0f && s.x[lane] >= box.x0 && s.x[lane] <= box.x1 && s.y[lane] >= box.y0 &&
+                s.y[lane] <= box.y1) {
                 job.lanes = static_cast<std::uint16_t>(job.lanes | 1u << lane);
                 ++tested;
             }
+        }
     }
     return tested;
 }

@@ -22,7 +22,8 @@ struct MicropolygonKernels {
     /// to the whole box; x0 > x1 where the stratum has no time in the piece's segment.
     void (*strata_boxes)(const Micropolygon& micro, std::span<const Domain> domains, LocalBox* boxes);
 
-    /// Fills `lanes` of each job. Returns how many samples lie in their stratum's box: those that are tested.
+    /// Fills `lanes` of each job. Returns how many samples lie in their stratum's box and in the piece's
+    /// part of the shutter: those that are tested.
     std::int64_t (*find_lanes)(const LocalTriangle& piece, const SampleVector* samples, const LocalBox* boxes,
                                std::span<MicroJob> jobs);
 };
