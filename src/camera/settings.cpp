@@ -1,8 +1,10 @@
 // What RenderSettings may hold, and the settings as JSON for a picture's header.
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <pentaprism/aov.h>
 #include <pentaprism/error.h>
 #include <pentaprism/metadata.h>
 #include <pentaprism/settings.h>
@@ -43,6 +45,9 @@ void check(const ImageSettings& image) {
     if (image.background) {
         for (const float value : *image.background) check_from("--background", value, 0.0, 65504.0);
     }
+    for (std::size_t i = 0; i < image.aovs.size(); ++i)
+        if (std::find(image.aovs.begin(), image.aovs.begin() + i, image.aovs[i]) != image.aovs.begin() + i)
+            refuse("--aov: an output is named twice");
     if (!image.crop) return;
     const auto [x0, x1, y0, y1] = *image.crop;
     const std::string crop = fmt::format("--crop {},{},{},{}", x0, x1, y0, y1);
@@ -193,6 +198,7 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
     json["exposure"] = image.exposure;
     json["tonemap"] = name_of(image.tonemap);
     put(json, "background", image.background);
+    for (const Aov aov : image.aovs) json["aovs"].push_back(aov_info(aov).name);
     put(json, "camera", camera.camera);
     put(json, "focal_length_mm", camera.focal_length_mm);
     put(json, "sensor_width_mm", camera.sensor_width_mm);

@@ -167,12 +167,13 @@ void add_animation_options(CLI::App& command, AnimationSettings& animation) {
 void add_method_options(CLI::App& command, MethodSettings& method) {
     const std::string group = "Method";
     std::string names;
-    for (const CullingChoice& choice : culling_tests()) names += (names.empty() ? "" : ", ") + choice.name;
-    add_value(command, group, "--culling", "NAME", fmt::format("Culling test (default auto): {}", names),
+    for (const CullingChoice& choice : culling_tests())
+        names += (names.empty() ? "" : ", ") + choice.name + (choice.conservative ? "" : " (loses samples)");
+    add_value(command, group, "--culling", "TEST[@tile|@pixel|@bucket][+...]",
+              fmt::format("Culling tests and what each is asked about (default auto): {}", names),
               [&](const std::string& text) {
-                  std::vector<std::pair<std::string, std::string>> choices;
-                  for (const CullingChoice& choice : culling_tests()) choices.emplace_back(choice.name, choice.name);
-                  method.culling = parse_choice<std::string>("--culling", text, choices);
+                  check_culling(text);
+                  method.culling = text;
               });
     add_value(command, group, "--visibility", "stochastic|accumulation|interleaved|raytrace|micropolygon",
               "How visible surfaces are found (default stochastic)", [&](const std::string& text) {

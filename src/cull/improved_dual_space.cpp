@@ -28,7 +28,6 @@ struct Slices {
     float u_scale, u_shift, v_scale, v_shift, t_scale, t_shift;  // to the unit domain
     Bilinear x_max, x_min, y_max, y_min;
 };
-static_assert(sizeof(Slices) <= sizeof(CullState));
 
 struct Corners {
     float max[2][2], min[2][2];  // [lens end][time end]
@@ -108,7 +107,7 @@ bool prepare(const LocalTriangle& T, const Footprint& footprint, CullState& stat
                                0.5f * (footprint.y1 - footprint.y0), 32.0f * kUnitRoundoff * scale(y, lens_v));
     if (refused(cy)) return false;
 
-    Slices& slices = reinterpret_cast<Slices&>(state);
+    Slices& slices = state.as<Slices>();
     to_unit(domain.u0, domain.u1, slices.u_scale, slices.u_shift, -1.0f);
     to_unit(domain.v0, domain.v1, slices.v_scale, slices.v_shift, -1.0f);
     // t of the picture -> fraction of the segment -> fraction of [t0, t1].
@@ -124,7 +123,7 @@ bool prepare(const LocalTriangle& T, const Footprint& footprint, CullState& stat
 }
 
 bool keeps(const CullState& state, const LocalSample& sample) {
-    const Slices& slices = reinterpret_cast<const Slices&>(state);
+    const Slices& slices = state.as<Slices>();
     const float u = std::fma(sample.u, slices.u_scale, slices.u_shift),
                 v = std::fma(sample.v, slices.v_scale, slices.v_shift);
     const float t = std::fma(sample.t, slices.t_scale, slices.t_shift);

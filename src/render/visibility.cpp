@@ -1,18 +1,9 @@
 #include "render/visibility.h"
 
 #include <algorithm>
-#include <pentaprism/error.h>
 
 namespace pentaprism {
 namespace {
-
-const CullTest* choose_test(const std::string& name) {
-    if (name == "auto") return nullptr;
-    if (const CullTest* test = find_cull_test(name)) return test;
-    std::string names = "auto";
-    for (const CullTest* test : cull_table()) names += std::string(", ") + test->name;
-    throw Error(ErrorKind::kUsage, "no culling test '" + name + "'; there are: " + names);
-}
 
 SamplePattern pattern_for(VisibilityMethod method) {
     switch (method) {
@@ -40,7 +31,10 @@ SampleTable make_samples(const Frame& frame, int spp, const MethodSettings& meth
 
 Visibility::Visibility(const Frame& frame, const SampleTable& samples, const MethodSettings& method,
                        const PixelRect& limits)
-    : frame_(frame), samples_(samples), method_(method.visibility), test_(choose_test(method.culling)) {
+    : frame_(frame),
+      samples_(samples),
+      method_(method.visibility),
+      culling_(method.culling == "auto" ? Culling() : parse_culling(method.culling)) {
     if (method_ == VisibilityMethod::kRaytrace)
         tracer_ = make_tracer(frame, samples);
     else
@@ -51,14 +45,14 @@ Visibility::Visibility(const Frame& frame, const SampleTable& samples, const Met
             tiles_.push_back({x, y, std::min(x + size, limits.x1), std::min(y + size, limits.y1)});
 }
 
-void Visibility::cover(const Tile& tile, Hits& hits, CoverCounts& counts) const {
+void Visibility::cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map) const {
     hits.reset(samples_.slots());
     if (tracer_) return tracer_->trace(tile, hits);
-    const TileWork work{frame_, samples_, bins_->triangles(), bins_->tile(tile.x0, tile.y0), tile};
+    const TileWork work{frame_, samples_, bins_->triangles(), bins_->tile(tile.x0, tile.y0), tile, map};
     if (method_ == VisibilityMethod::kMicropolygon)
         cover_micropolygons(work, hits, counts);
-    else if (test_ != nullptr)
-        cover_with_test(work, *test_, hits, counts);
+    else if (!culling_.empty())
+        cover_with_test(work, culling_, hits, counts);
     else if (samples_.pattern() != SamplePattern::kFree)
         cover_shared(work, hits, counts);
     else

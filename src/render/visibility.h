@@ -23,8 +23,9 @@ class Visibility {
     /// Tiles that cover the limits, rows from top to bottom, each row from left to right.
     const std::vector<Tile>& tiles() const { return tiles_; }
 
-    /// Fills the tile's hits. Thread-safe: each caller brings its own Hits.
-    void cover(const Tile& tile, Hits& hits, CoverCounts& counts) const;
+    /// Fills the tile's hits. Thread-safe: each caller brings its own Hits and may share a map of the whole picture, in
+    /// which tiles write different pixels.
+    void cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map = nullptr) const;
 
     /// 0 for a tracer.
     std::int64_t binned_triangles() const { return bins_ ? static_cast<std::int64_t>(bins_->triangles().size()) : 0; }
@@ -33,7 +34,7 @@ class Visibility {
     const Frame& frame_;
     const SampleTable& samples_;
     VisibilityMethod method_;
-    const CullTest* test_;  ///< nullptr: the fast path
+    Culling culling_;  ///< empty: the fast path
     std::optional<Bins> bins_;
     std::unique_ptr<const Tracer> tracer_;
     std::vector<Tile> tiles_;
