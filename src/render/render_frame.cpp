@@ -52,7 +52,8 @@ void store(const glm::dmat4& matrix, std::array<double, 16>& out) {
         for (int row = 0; row < 4; ++row) out[4 * column + row] = matrix[column][row];
 }
 
-FrameInfo frame_info(const Frame& frame, const RenderSettings& settings, double number, const PixelRect& crop) {
+FrameInfo frame_info(const Frame& frame, std::span<const Index> animations, const RenderSettings& settings,
+                     double number, const PixelRect& crop) {
     const View& view = frame.view;
     FrameInfo info;
     info.width = view.width;
@@ -75,8 +76,17 @@ FrameInfo frame_info(const Frame& frame, const RenderSettings& settings, double 
     projection[2][2] = -1.0;
     projection[2][3] = view.perspective ? -1.0 : 0.0;
     projection[3][3] = view.perspective ? 0.0 : 1.0;
+    info.fx = view.fx;
+    info.fy = view.fy;
     store(to_camera, info.world_to_camera);
     store(projection * to_camera, info.world_to_ndc);
+    for (int k = 0; k <= info.max_motion_segments; ++k) {
+        FrameInfo::Knot knot;
+        knot.time = view.shutter.at(static_cast<double>(k) / info.max_motion_segments);
+        store(world_to_camera(view, evaluate(*frame.scene, animations, knot.time)), knot.world_to_camera);
+        info.knots.push_back(knot);
+        if (view.shutter.close == view.shutter.open) break;  // one instant
+    }
     return info;
 }
 
@@ -222,7 +232,7 @@ void Renderer::render(const RenderSettings& settings, double number, RowSink& si
     const ShadingScene shading(frame);
     const auto prepared = Clock::now();
 
-    FrameInfo info = frame_info(frame, settings, number, crop);
+    FrameInfo info = frame_info(frame, animations, settings, number, crop);
     const AovTables aov_tables(frame, settings, number);
     aov_tables.describe(settings.image.aovs, info);
     std::optional<AovFilm> aov_film;
