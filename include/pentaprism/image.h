@@ -29,6 +29,9 @@ std::unique_ptr<PictureWriter> make_picture_writer(const std::filesystem::path& 
 /// True for a name that make_picture_writer() accepts.
 bool is_picture_name(const std::filesystem::path& file);
 
+/// True for a file that may hold output variables beside the picture.
+bool is_exr_name(const std::filesystem::path& file);
+
 /// Threads that compress EXR pictures beside the caller's, for the whole process; 0 (the default): none. Never changes
 /// a byte.
 void set_picture_threads(int threads);

@@ -11,6 +11,7 @@
 #include <pentaprism/stats.h>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pentaprism {
@@ -29,14 +30,19 @@ struct FrameInfo {
     std::array<double, 16> world_to_ndc{};     ///< column-major, at mid-shutter; NDC in [-1,1], y up
     std::string camera;
     int max_motion_segments = 1;
+    std::vector<Aov> aovs;                                        ///< what PixelRows::aovs holds, in this order
+    std::vector<std::pair<std::string, std::string>> attributes;  ///< for the header of a file: names of ids
 };
 
 /// Rows y0 .. y0 + count - 1 of the picture, x from FrameInfo::x0 to x1. `rgba` holds 4 floats a pixel: linear colour
 /// with exposure applied, premultiplied by alpha where the background is absent; alpha is coverage. `z` holds one float
 /// a pixel: the depth along the optical axis (metres) of the closest sample, +infinity where nothing is hit.
+/// `aovs` holds the channels of FrameInfo::aovs one after the other (pentaprism/aov.h), each a float or an unsigned
+/// 32-bit number for each pixel of the rows.
 struct PixelRows {
     int y0 = 0, count = 0, width = 0;
     std::span<const float> rgba, z;
+    std::span<const float> aovs{};
 };
 
 /// Receives a frame. begin() is called once, then rows() for bands from top to bottom that together are the picture.
@@ -79,6 +85,7 @@ struct Picture {
     int width = 0, height = 0;
     std::vector<float> rgba;  ///< 4 * width * height
     std::vector<float> z;     ///< width * height
+    std::vector<float> aovs;  ///< width * height for each channel of FrameInfo::aovs, one channel after the other
     FrameInfo info;
 };
 Picture render_picture(const Scene& scene, const RenderSettings& settings, double frame, RenderStats& stats);

@@ -5,11 +5,27 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace pentaprism {
 
 enum class Filter : std::uint8_t { kBox, kTent, kGaussian, kBlackmanHarris };
 enum class ToneMap : std::uint8_t { kNone, kAces, kFilmic };
+/// Outputs beside colour, alpha and depth; pentaprism/aov.h tells what each means.
+enum class Aov : std::uint8_t {
+    kDepth,
+    kNormal,
+    kPosition,
+    kUv,
+    kMotion,
+    kCoc,
+    kTime,
+    kObjectId,
+    kMaterialId,
+    kCryptomatte,
+    kCoverage,
+    kVariance
+};
 enum class ShutterPosition : std::uint8_t { kStart, kCenter, kEnd };
 
 struct ImageSettings {
@@ -20,6 +36,7 @@ struct ImageSettings {
     double exposure = 0.0;                   ///< EV: colours are multiplied by 2^exposure
     ToneMap tonemap = ToneMap::kAces;        ///< PNG only
     std::optional<std::array<float, 3>> background;  ///< linear; unset: the scene's, else black
+    std::vector<Aov> aovs;                           ///< outputs beside the colour, each at most once
 };
 
 /// An unset value comes from the scene's camera (LensInfo), else from the default in the comment.
@@ -50,8 +67,19 @@ struct AnimationSettings {
     std::string animation = "all";  ///< name or index of one clip, or "all"
 };
 
+/// How the visible surface of each sample is found. Shading and film are the same for all.
+enum class VisibilityMethod {
+    kStochastic,    ///< stochastic rasterization: every sample has its own (x, y, u, v, t)
+    kAccumulation,  ///< spp passes, each with one (u, v, t) for the whole picture (Haeberli & Akeley 1990): ghosts
+    kInterleaved,   ///< InterleaveUVT (Fatahalian et al. 2009): 64 or more (u, v, t) that blocks of pixels share
+    kRaytrace,      ///< the samples of kStochastic, traced with Embree; Error(kBackend) in a build without it
+    kMicropolygon   ///< the samples of kStochastic, triangles diced to about a pixel (Reyes; Cook et al. 1987)
+};
+
 struct MethodSettings {
-    std::string culling = "auto";   ///< "auto" or a combination of culling_tests()
+    VisibilityMethod visibility = VisibilityMethod::kStochastic;
+    /// "auto" or a combination of culling_tests(); kRaytrace and kMicropolygon have no use for one: "auto" alone.
+    std::string culling = "auto";
     std::string shading = "pixel";  ///< how often visible surfaces are shaded
     std::uint32_t seed = 0;         ///< of the sample pattern
     int threads = 0;                ///< 0: all processors

@@ -1,8 +1,10 @@
 // What RenderSettings may hold, and the settings as JSON for a picture's header.
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <pentaprism/aov.h>
 #include <pentaprism/error.h>
 #include <pentaprism/metadata.h>
 #include <pentaprism/settings.h>
@@ -43,6 +45,9 @@ void check(const ImageSettings& image) {
     if (image.background) {
         for (const float value : *image.background) check_from("--background", value, 0.0, 65504.0);
     }
+    for (std::size_t i = 0; i < image.aovs.size(); ++i)
+        if (std::find(image.aovs.begin(), image.aovs.begin() + i, image.aovs[i]) != image.aovs.begin() + i)
+            refuse("--aov: an output is named twice");
     if (!image.crop) return;
     const auto [x0, x1, y0, y1] = *image.crop;
     const std::string crop = fmt::format("--crop {},{},{},{}", x0, x1, y0, y1);
@@ -93,7 +98,29 @@ void check(const AnimationSettings& animation) {
     check_from("--fps", animation.fps, 0.0, 1e6);
 }
 
+const char* name_of(VisibilityMethod method) {
+    switch (method) {
+        case VisibilityMethod::kAccumulation:
+            return "accumulation";
+        case VisibilityMethod::kInterleaved:
+            return "interleaved";
+        case VisibilityMethod::kRaytrace:
+            return "raytrace";
+        case VisibilityMethod::kMicropolygon:
+            return "micropolygon";
+        case VisibilityMethod::kStochastic:
+            break;
+    }
+    return "stochastic";
+}
+
 void check(const MethodSettings& method) {
+    const bool culls =
+        method.visibility != VisibilityMethod::kRaytrace && method.visibility != VisibilityMethod::kMicropolygon;
+    if (!culls && method.culling != "auto") {
+        refuse(fmt::format("--culling {}: --visibility {} has no use for it; leave one of them out", method.culling,
+                           name_of(method.visibility)));
+    }
     check_whole("--threads", method.threads, 0, 1024);
     if (method.tile_size != 8 && method.tile_size != 16 && method.tile_size != 32) {
         refuse(fmt::format("tile size: {} is not 8, 16 or 32", method.tile_size));
@@ -171,6 +198,7 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
     json["exposure"] = image.exposure;
     json["tonemap"] = name_of(image.tonemap);
     put(json, "background", image.background);
+    for (const Aov aov : image.aovs) json["aovs"].push_back(aov_info(aov).name);
     put(json, "camera", camera.camera);
     put(json, "focal_length_mm", camera.focal_length_mm);
     put(json, "sensor_width_mm", camera.sensor_width_mm);
@@ -189,6 +217,7 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
     json["motion_segments"] = shutter.motion_segments;
     json["fps"] = animation.fps;
     json["animation"] = animation.animation;
+    json["visibility"] = name_of(method.visibility);
     json["shading"] = method.shading;
     json["seed"] = method.seed;
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <pentaprism/aov.h>
 #include <pentaprism/error.h>
 #include <pentaprism/frames.h>
 #include <pentaprism/image.h>
@@ -17,6 +18,7 @@
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/progress.h"
+#include "cli/values.h"
 
 namespace pentaprism::cli {
 namespace {
@@ -84,6 +86,9 @@ void check_names(const RenderCommand& command) {
         throw Error(ErrorKind::kUsage,
                     fmt::format("--output {}: the name must end in .exr or .png", command.out.string()));
     }
+    if (!command.settings.image.aovs.empty() && !is_exr_name(command.out))
+        throw Error(ErrorKind::kUsage,
+                    fmt::format("--aov: only .exr files hold more than a picture, not {}", command.out.string()));
     if (command.frames.size() > 1 && !has_frame_number(command.out)) {
         throw Error(ErrorKind::kUsage,
                     fmt::format("--output {}: {} frames need a place for their number, such as a.####{}",
@@ -182,7 +187,15 @@ void add_output_options(CLI::App& command, RenderCommand& render) {
               "Picture: .exr (linear) or .png (tone-mapped); #### is the frame's number",
               [&](const std::string& text) { render.out = text; })
         ->required();
-    add_planned_value(command, group, "--aov", "LIST", "More channels");
+    std::string names;
+    for (const AovInfo& info : aov_table()) names += (names.empty() ? "" : ", ") + std::string(info.name);
+    add_value(command, group, "--aov", "LIST",
+              fmt::format("More outputs in .exr files, with commas between: {}", names), [&](const std::string& text) {
+                  for (const std::string& name : split_list(text)) {
+                      if (name == "albedo" || name == "ste") refuse_as_planned("--aov " + name);
+                      render.settings.image.aovs.push_back(aov_named(name));
+                  }
+              });
     add_planned_flag(command, group, "--sharp", "The instantaneous pinhole twin");
     add_planned_value(command, group, "--dataset", "DIR", "Blurred and sharp frames, depth, flow, ...");
     add_value(command, group, "--stats", "FILE.json",

@@ -1,6 +1,7 @@
 #pragma once
-// Which samples of a tile are covered, by what, how far: fills the tile's Hits. Two implementations with the same
-// result, bit for bit: one sample at a time with any culling test (the readable truth), and vectors of sixteen samples.
+// Which samples of a tile are covered, by what, how far: fills the tile's Hits. Implementations with the same result,
+// bit for bit: one sample at a time with any culling test (the readable truth), vectors of sixteen samples, and still
+// triangles for samples that share lens position and time. Micropolygons are another model, the same up to rounding.
 
 #include <cstdint>
 #include <span>
@@ -53,5 +54,13 @@ void cover_with_test(const TileWork& work, const CullTest& test, Hits& hits, Cov
 
 /// The fast path of `--culling auto`, on the CPU target in use (base/cpu.h). Equals cover_with_test with any test.
 void cover_vectors(const TileWork& work, Hits& hits, CoverCounts& counts);
+
+/// For sample tables whose pattern is not SamplePattern::kFree: a triangle is placed and boxed once for each triple (u,
+/// v, t). `tested` counts the triple's samples in the box. Equals the two above.
+void cover_shared(const TileWork& work, Hits& hits, CoverCounts& counts);
+
+/// Triangles diced to micropolygons of about a pixel (cover/dice.h). Differs from the others where rounding at an edge
+/// or between two depths decides.
+void cover_micropolygons(const TileWork& work, Hits& hits, CoverCounts& counts);
 
 }  // namespace pentaprism

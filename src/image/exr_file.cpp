@@ -9,7 +9,10 @@
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfInputFile.h>
+#include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
@@ -21,6 +24,7 @@
 #include <limits>
 #include <new>
 #include <optional>
+#include <pentaprism/aov.h>
 #include <pentaprism/error.h>
 
 #include "base/parallel.h"
@@ -83,7 +87,28 @@ Imf::Header make_header(const FrameInfo& info, const FileMetadata& metadata) {
     header.insert("frame", Imf::DoubleAttribute(info.frame));
     if (!info.camera.empty()) header.insert("camera", Imf::StringAttribute(info.camera));
     if (!metadata.settings_json.empty()) header.insert("pentaprism", Imf::StringAttribute(metadata.settings_json));
+    for (const auto& [name, value] : info.attributes) header.insert(name, Imf::StringAttribute(value));
     return header;
+}
+
+// The colour, then a part for each output variable, named after it and with its rule in words.
+std::vector<Imf::Header> make_part_headers(const FrameInfo& info, const FileMetadata& metadata) {
+    std::vector<Imf::Header> headers{make_header(info, metadata)};
+    headers[0].setName("rgba");
+    headers[0].setType(Imf::SCANLINEIMAGE);
+    for (const Aov aov : info.aovs) {
+        const AovInfo& about = aov_info(aov);
+        Imf::Header header(headers[0].displayWindow(), headers[0].dataWindow(), 1.0f, Imath::V2f(0, 0), 1.0f,
+                           Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
+        header.setName(about.name);
+        header.setType(Imf::SCANLINEIMAGE);
+        Imf::addChromaticities(header, Imf::Chromaticities());  // parts have to agree
+        header.insert("rule", Imf::StringAttribute(about.rule));
+        for (const ChannelInfo& channel : about.channels)
+            header.channels().insert(channel.name, Imf::Channel(channel.whole_number ? Imf::UINT : Imf::FLOAT));
+        headers.push_back(header);
+    }
+    return headers;
 }
 
 class PartStream : public Imf::OStream {
@@ -105,7 +130,15 @@ class ExrWriter : public PictureWriter {
     void begin(const FrameInfo& info) override {
         order_.begin(info, file_.name());
         x0_ = info.x0;
-        guarded([&] { output_.emplace(stream_, make_header(info, metadata_)); });
+        aovs_ = info.aovs;
+        guarded([&] {
+            if (aovs_.empty()) {
+                output_.emplace(stream_, make_header(info, metadata_));
+            } else {
+                const std::vector<Imf::Header> headers = make_part_headers(info, metadata_);
+                parts_.emplace(stream_, headers.data(), static_cast<int>(headers.size()));
+            }
+        });
     }
 
     void rows(const PixelRows& band) override {
@@ -113,14 +146,19 @@ class ExrWriter : public PictureWriter {
         if (band.count == 0) return;
         to_halves(band);
         guarded([&] {
-            output_->setFrameBuffer(frame_buffer(band));
-            output_->writePixels(band.count);
+            if (aovs_.empty()) {
+                output_->setFrameBuffer(frame_buffer(band));
+                output_->writePixels(band.count);
+            } else {
+                write_parts(band);
+            }
         });
     }
 
     void finish() override {
         order_.finish();
         output_.reset();  // writes the table of line offsets, and is silent about failures
+        parts_.reset();
         file_.throw_if_failed();
         file_.commit();
     }
@@ -160,14 +198,37 @@ class ExrWriter : public PictureWriter {
         return buffer;
     }
 
+    void write_parts(const PixelRows& band) {
+        const auto write = [&](int part, const Imf::FrameBuffer& buffer) {
+            Imf::OutputPart output(*parts_, part);
+            output.setFrameBuffer(buffer);
+            output.writePixels(band.count);
+        };
+        write(0, frame_buffer(band));
+        const Imath::V2i origin(x0_, band.y0);
+        const auto pixels = static_cast<std::size_t>(band.width) * static_cast<std::size_t>(band.count);
+        const float* channel = band.aovs.data();
+        for (std::size_t i = 0; i < aovs_.size(); ++i) {
+            Imf::FrameBuffer buffer;
+            for (const ChannelInfo& about : aov_info(aovs_[i]).channels) {
+                buffer.insert(about.name, Imf::Slice::Make(about.whole_number ? Imf::UINT : Imf::FLOAT, channel, origin,
+                                                           band.width, band.count));
+                channel += pixels;
+            }
+            write(static_cast<int>(i) + 1, buffer);
+        }
+    }
+
     FileMetadata metadata_;
     RowOrder order_;
     int x0_ = 0;
+    std::vector<Aov> aovs_;
     std::vector<half> halves_;
     // Destroyed last to first: the output writes into the stream, the stream into the file.
     PartFile file_;
     PartStream stream_;
-    std::optional<Imf::OutputFile> output_;
+    std::optional<Imf::OutputFile> output_;          // of a picture of colour and depth alone
+    std::optional<Imf::MultiPartOutputFile> parts_;  // of one with more
 };
 
 void read_channels(Imf::InputFile& input, Picture& picture) {

@@ -3,6 +3,21 @@
 #include <algorithm>
 
 namespace pentaprism {
+namespace {
+
+SamplePattern pattern_for(VisibilityMethod method) {
+    switch (method) {
+        case VisibilityMethod::kAccumulation:
+            return SamplePattern::kAccumulation;
+        case VisibilityMethod::kInterleaved:
+            return SamplePattern::kInterleaved;
+        default:
+            return SamplePattern::kFree;
+    }
+}
+
+}  // namespace
+
 Grouping grouping_for(const Frame& frame) {
     const bool motion =
         std::any_of(frame.parts.begin(), frame.parts.end(), [](const Part& part) { return part.moves; });
@@ -10,12 +25,20 @@ Grouping grouping_for(const Frame& frame) {
     return motion ? (defocus ? Grouping::kBoth : Grouping::kMotion) : (defocus ? Grouping::kDefocus : Grouping::kStill);
 }
 
+SampleTable make_samples(const Frame& frame, int spp, const MethodSettings& method) {
+    return SampleTable(spp, method.seed, frame.view.lens, grouping_for(frame), pattern_for(method.visibility));
+}
+
 Visibility::Visibility(const Frame& frame, const SampleTable& samples, const MethodSettings& method,
                        const PixelRect& limits)
     : frame_(frame),
       samples_(samples),
-      culling_(method.culling == "auto" ? Culling() : parse_culling(method.culling)),
-      bins_(frame, method.tile_size, limits) {
+      method_(method.visibility),
+      culling_(method.culling == "auto" ? Culling() : parse_culling(method.culling)) {
+    if (method_ == VisibilityMethod::kRaytrace)
+        tracer_ = make_tracer(frame, samples);
+    else
+        bins_.emplace(frame, method.tile_size, limits);
     const int size = method.tile_size;
     for (int y = limits.y0 / size * size; y < limits.y1; y += size)
         for (int x = limits.x0 / size * size; x < limits.x1; x += size)
@@ -24,9 +47,14 @@ Visibility::Visibility(const Frame& frame, const SampleTable& samples, const Met
 
 void Visibility::cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map) const {
     hits.reset(samples_.slots());
-    const TileWork work{frame_, samples_, bins_.triangles(), bins_.tile(tile.x0, tile.y0), tile, map};
-    if (!culling_.empty())
+    if (tracer_) return tracer_->trace(tile, hits);
+    const TileWork work{frame_, samples_, bins_->triangles(), bins_->tile(tile.x0, tile.y0), tile, map};
+    if (method_ == VisibilityMethod::kMicropolygon)
+        cover_micropolygons(work, hits, counts);
+    else if (!culling_.empty())
         cover_with_test(work, culling_, hits, counts);
+    else if (samples_.pattern() != SamplePattern::kFree)
+        cover_shared(work, hits, counts);
     else
         cover_vectors(work, hits, counts);
 }

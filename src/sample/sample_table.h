@@ -7,7 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "base/aligned.h"
 #include "camera/view.h"
+#include "sample/shared_triples.h"
 
 namespace pentaprism {
 
@@ -37,14 +39,31 @@ struct Domain {
 /// Which coordinates the samples of one vector share closely: those that blur.
 enum class Grouping : std::uint8_t { kStill, kMotion, kDefocus, kBoth };
 
+/// The samples of a cell by their lens position and time, for patterns that share these among pixels.
+struct SharedSamples {
+    struct Triple {
+        float u, v, t;
+    };
+    int block_side = 1;               ///< K: a triple has one sample in each block of K x K pixels
+    int side = 0;                     ///< blocks a side of the cell: 32 / K
+    std::span<const Triple> triples;  ///< by time
+    /// [(triple * side + row) * side + column]: the sample in block (column, row) of the cell. x, y as in SampleVector;
+    /// place: its entry in Hits. x and y begin on a cache line.
+    std::span<const float> x, y;
+    std::span<const std::uint32_t> place;
+};
+
 class SampleTable {
   public:
-    /// Cost and memory: period^2 * spp * 20 bytes, at most about 90 MB.
-    SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping grouping);
+    /// Cost and memory: period^2 * spp * 20 bytes, at most about 90 MB; shared patterns 12 bytes a sample more. These
+    /// arrange samples by index, whatever the grouping.
+    SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping grouping,
+                SamplePattern pattern = SamplePattern::kFree);
 
     int spp() const { return spp_; }
     int slots() const { return spp_; }  ///< vectors of a block
     Grouping grouping() const { return grouping_; }
+    SamplePattern pattern() const { return pattern_; }
 
     /// Blocks are addressed in the whole picture: block (bx, by) covers pixels [4 bx, 4 bx + 4) x [4 by, 4 by + 4).
     std::span<const SampleVector> block(int bx, int by) const;
@@ -74,18 +93,28 @@ class SampleTable {
     };
     std::span<const Stratum> strata(int cx, int cy) const;
 
+    /// Of a pattern that is not kFree.
+    SharedSamples shared(int cx, int cy) const;
+
   private:
     std::size_t cell_index(int cx, int cy) const;
     std::size_t block_index(int bx, int by) const;
+    void arrange_by_triple(const SharedTriples& shared);
 
     int spp_, period_;
     std::uint32_t seed_;
     Grouping grouping_;
+    SamplePattern pattern_;
     std::vector<SampleVector> vectors_;   // [cell of the period][block][slot]
     std::vector<std::uint16_t> indices_;  // [block][slot][lane]
     std::vector<std::uint16_t> slots_;    // [block][lane][index]
     std::vector<Domain> domains_;
     std::vector<std::vector<Stratum>> strata_;  // by cell of the period
+    // Shared patterns: [cell of the period], then as in SharedSamples.
+    int block_side_ = 1;
+    std::vector<SharedSamples::Triple> triples_;
+    AlignedVector<float> shared_x_, shared_y_;
+    std::vector<std::uint32_t> shared_places_;
 };
 
 }  // namespace pentaprism

@@ -1,0 +1,72 @@
+// Counting and timing are apart: one run of each method counts and compares every hit with that of `none`; then all
+// methods are timed in turn, round after round, so that what else the machine does hits them alike, and medians count.
+
+#include "lab/measure.h"
+
+#include <algorithm>
+
+#include "cull/cull_choice.h"
+#include "lab/machine.h"
+
+namespace pentaprism {
+namespace {
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const std::size_t n = values.size();
+    return n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
+}
+
+BenchRow counted_row(FrameWalk& walk, const std::string& method) {
+    reset_peak_memory();
+    const FrameWalk::Counts counts = walk.count(method, nullptr);
+    BenchRow row;
+    row.method = method;
+    row.conservative = method == "auto" || is_conservative(parse_culling(method));
+    row.samples = walk.samples();
+    row.tested = counts.cover.tested;
+    row.covered = counts.cover.covered;
+    row.footprints = counts.cover.footprints;
+    row.kept_footprints = counts.cover.kept_footprints;
+    row.asked = counts.cover.asked;
+    row.false_culls = counts.lost;
+    row.frame_ms = counts.frame_ms;
+    row.peak_mb = static_cast<double>(peak_memory() - walk.reference_bytes()) / (1024.0 * 1024.0);
+    return row;
+}
+
+struct Times {
+    std::vector<double> frame, setup;
+};
+
+}  // namespace
+
+Measurements measure_methods(const PosedPicture& picture, const MeasureOptions& options, const KeepGoing& keep_going) {
+    FrameWalk walk(picture, options.method, options.most_tests, keep_going);
+    walk.make_reference();
+    Measurements result;
+    result.cell = walk.describe();
+    std::vector<BenchRow>& rows = result.rows;
+    for (const std::string& method : options.methods) {
+        rows.push_back(counted_row(walk, method));
+        // A frame and its questions make one round, and the counting run has told how long a frame takes.
+        const double round_ms = std::max(1e-3, 2.0 * rows.back().frame_ms * walk.share());
+        rows.back().runs = static_cast<int>(std::clamp(1000.0 * options.seconds / round_ms, 1.0, 1.0 * options.runs));
+    }
+    std::vector<Times> times(rows.size());
+    for (int round = 0; round < options.runs; ++round)
+        for (std::size_t k = 0; k < rows.size(); ++k) {
+            const std::size_t i = (k + static_cast<std::size_t>(round)) % rows.size();  // nobody is always the first
+            if (round >= rows[i].runs) continue;
+            times[i].frame.push_back(walk.time_frame(rows[i].method));
+            times[i].setup.push_back(walk.time_setup(rows[i].method));
+        }
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        rows[i].frame_ms = median(times[i].frame);
+        rows[i].setup_ms = std::min(rows[i].frame_ms, median(times[i].setup));
+        rows[i].test_ms = rows[i].frame_ms - rows[i].setup_ms;
+    }
+    return result;
+}
+
+}  // namespace pentaprism
