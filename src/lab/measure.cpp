@@ -58,8 +58,8 @@ Measurements measure_methods(const PosedPicture& picture, const MeasureOptions& 
         for (std::size_t k = 0; k < rows.size(); ++k) {
             const std::size_t i = (k + static_cast<std::size_t>(round)) % rows.size();  // nobody is always the first
             if (round >= rows[i].runs) continue;
-            times[i].frame.push_back(walk.time_frame(rows[i].method));
-            times[i].setup.push_back(walk.time_setup(rows[i].method));
+            times[i].frame.push_back(walk.time_frame(rows[i].method).ms);
+            times[i].setup.push_back(walk.time_setup(rows[i].method).ms);
         }
     for (std::size_t i = 0; i < rows.size(); ++i) {
         rows[i].frame_ms = median(times[i].frame);

@@ -39,6 +39,20 @@ Culling refusing(Culling culling) {
     return culling;
 }
 
+// Sums up the counts of tiles from all threads.
+class Adder {
+  public:
+    explicit Adder(CoverCounts& sum) : sum_(sum) {}
+    void add(const CoverCounts& counts) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        sum_.add(counts);
+    }
+
+  private:
+    CoverCounts& sum_;
+    std::mutex mutex_;
+};
+
 PixelRect whole(const PosedPicture& picture) {
     return {0, picture.frame.view.width, 0, picture.frame.view.height};
 }
@@ -177,7 +191,8 @@ FrameWalk::Counts FrameWalk::count(const std::string& method, MethodMap* map) {
                 std::vector<std::uint32_t>(pixels)};
     }
     Counts result;
-    std::mutex adding;
+    Adder adder(result.cover);
+    std::atomic<std::int64_t> all_lost{0};
     const auto start = Clock::now();
     const Visibility visibility = visibility_of(method);
     const double bins_ms = milliseconds_since(start);
@@ -190,38 +205,46 @@ FrameWalk::Counts FrameWalk::count(const std::string& method, MethodMap* map) {
             ++lost;
             if (map != nullptr) ++map->lost[static_cast<std::size_t>(py) * view.width + px];
         });
-        const std::lock_guard<std::mutex> lock(adding);
-        result.cover.add(counts);
-        result.lost += lost;
+        all_lost += lost;
+        adder.add(counts);
     });
+    result.lost = all_lost;
     result.frame_ms = bins_ms + tiles_ms;
     return result;
 }
 
-double FrameWalk::time_frame(const std::string& method) {
+FrameWalk::Timed FrameWalk::time_frame(const std::string& method) {
+    Timed timed;
+    Adder adder(timed.cover);
     const auto start = Clock::now();
     const Visibility visibility = visibility_of(method);
-    const double bins_ms = milliseconds_since(start);
-    return bins_ms + for_each_tile(method + ": timing", [&](std::size_t i, Hits& hits) {
-               CoverCounts counts;
-               visibility.cover(tiles_[i], hits, counts);
-           });
+    timed.ms = milliseconds_since(start);
+    timed.ms += for_each_tile(method + ": timing", [&](std::size_t i, Hits& hits) {
+        CoverCounts counts;
+        visibility.cover(tiles_[i], hits, counts);
+        adder.add(counts);
+    });
+    return timed;
 }
 
-double FrameWalk::time_setup(const std::string& method) {
+FrameWalk::Timed FrameWalk::time_setup(const std::string& method) {
+    Timed timed;
+    Adder adder(timed.cover);
     const auto start = Clock::now();
     const Bins bins(picture_.frame, settings_.tile_size, whole(picture_));
-    const double bins_ms = milliseconds_since(start);
-    if (method == "auto") return bins_ms;
+    timed.ms = milliseconds_since(start);
+    if (method == "auto") return timed;
     const Culling culling = refusing(parse_culling(method));
-    return bins_ms + for_each_tile(method + ": timing its questions", [&](std::size_t i, Hits& hits) {
-               const Tile& tile = tiles_[i];
-               hits.reset(picture_.samples.slots());
-               CoverCounts counts;
-               cover_with_test(
-                   {picture_.frame, picture_.samples, bins.triangles(), bins.tile(tile.x0, tile.y0), tile, nullptr},
-                   culling, hits, counts);
-           });
+    timed.ms += for_each_tile(method + ": timing its questions", [&](std::size_t i, Hits& hits) {
+        const Tile& tile = tiles_[i];
+        hits.reset(picture_.samples.slots());
+        CoverCounts counts;
+        cover_with_test(
+            {picture_.frame, picture_.samples, bins.triangles(), bins.tile(tile.x0, tile.y0), tile, nullptr}, culling,
+            hits, counts);
+        adder.add(counts);
+    });
+    return timed;
 }
 
 BenchCell FrameWalk::describe() {

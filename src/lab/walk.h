@@ -46,11 +46,14 @@ class FrameWalk {
     /// `map`, of the whole picture, may be null.
     Counts count(const std::string& method, MethodMap* map);
 
-    /// Milliseconds of a whole frame: bounds and bins, and the tiles' time over share().
-    double time_frame(const std::string& method);
+    struct Timed {
+        double ms = 0.0;  ///< of a whole frame: bounds and bins, and the tiles' time over share()
+        CoverCounts cover;
+    };
+    Timed time_frame(const std::string& method);
 
-    /// The same of all that comes before exact tests (BenchRow::setup_ms).
-    double time_setup(const std::string& method);
+    /// The same of all that comes before exact tests (BenchRow::setup_ms): nothing is tested.
+    Timed time_setup(const std::string& method);
 
     /// Motion, blur and coverage of the whole picture.
     BenchCell describe();
