@@ -72,13 +72,14 @@ enum class VisibilityMethod {
     kStochastic,    ///< stochastic rasterization: every sample has its own (x, y, u, v, t)
     kAccumulation,  ///< spp passes, each with one (u, v, t) for the whole picture (Haeberli & Akeley 1990): ghosts
     kInterleaved,   ///< InterleaveUVT (Fatahalian et al. 2009): 64 or more (u, v, t) that blocks of pixels share
-    kRaytrace       ///< the samples of kStochastic, traced with Embree; Error(kBackend) in a build without it
+    kRaytrace,      ///< the samples of kStochastic, traced with Embree; Error(kBackend) in a build without it
+    kMicropolygon   ///< the samples of kStochastic, triangles diced to about a pixel (Reyes; Cook et al. 1987)
 };
 
 struct MethodSettings {
     VisibilityMethod visibility = VisibilityMethod::kStochastic;
-    std::string culling =
-        "auto";  ///< "auto" or a combination of culling_tests(); kRaytrace culls nothing: "auto" alone
+    /// "auto" or a combination of culling_tests(); kRaytrace and kMicropolygon have no use for one: "auto" alone.
+    std::string culling = "auto";
     std::string shading = "pixel";  ///< how often visible surfaces are shaded
     std::uint32_t seed = 0;         ///< of the sample pattern
     int threads = 0;                ///< 0: all processors

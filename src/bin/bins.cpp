@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "bound/facing.h"
+#include "frame/opacity.h"
 
 namespace pentaprism {
 namespace {
@@ -24,6 +25,7 @@ void bound_triangle(const Frame& frame, std::uint32_t triangle, const PixelRect&
                     std::vector<BinnedTriangle>& out) {
     const Part& part = frame.parts[frame.part_of[triangle]];
     const View& view = frame.view;
+    if (opacity_class(frame, triangle) == OpacityClass::kClear) return;
     for (int segment = 0; segment < (part.moves ? part.segments : 1); ++segment) {
         const MovingTriangle m = moving_triangle(frame, triangle, segment);
         if (!is_usable(m)) continue;

@@ -22,7 +22,7 @@ struct BinnedTriangle {
 class Bins {
   public:
     /// `limits`: the pixels that are rendered. Drops triangles with numbers that are not finite or above 1e12, those
-    /// that turn a culled back to every sample, and those outside the limits.
+    /// that turn a culled back to every sample, wholly transparent ones, and those outside the limits.
     Bins(const Frame& frame, int tile_size, const PixelRect& limits);
 
     std::span<const BinnedTriangle> triangles() const { return triangles_; }

@@ -98,10 +98,28 @@ void check(const AnimationSettings& animation) {
     check_from("--fps", animation.fps, 0.0, 1e6);
 }
 
+const char* name_of(VisibilityMethod method) {
+    switch (method) {
+        case VisibilityMethod::kAccumulation:
+            return "accumulation";
+        case VisibilityMethod::kInterleaved:
+            return "interleaved";
+        case VisibilityMethod::kRaytrace:
+            return "raytrace";
+        case VisibilityMethod::kMicropolygon:
+            return "micropolygon";
+        case VisibilityMethod::kStochastic:
+            break;
+    }
+    return "stochastic";
+}
+
 void check(const MethodSettings& method) {
-    if (method.visibility == VisibilityMethod::kRaytrace && method.culling != "auto") {
-        refuse(fmt::format("--culling {}: --visibility raytrace has nothing to cull; leave one of them out",
-                           method.culling));
+    const bool culls =
+        method.visibility != VisibilityMethod::kRaytrace && method.visibility != VisibilityMethod::kMicropolygon;
+    if (!culls && method.culling != "auto") {
+        refuse(fmt::format("--culling {}: --visibility {} has no use for it; leave one of them out", method.culling,
+                           name_of(method.visibility)));
     }
     check_whole("--threads", method.threads, 0, 1024);
     if (method.tile_size != 8 && method.tile_size != 16 && method.tile_size != 32) {
@@ -145,20 +163,6 @@ const char* name_of(ShutterPosition position) {
             break;
     }
     return "center";
-}
-
-const char* name_of(VisibilityMethod method) {
-    switch (method) {
-        case VisibilityMethod::kAccumulation:
-            return "accumulation";
-        case VisibilityMethod::kInterleaved:
-            return "interleaved";
-        case VisibilityMethod::kRaytrace:
-            return "raytrace";
-        case VisibilityMethod::kStochastic:
-            break;
-    }
-    return "stochastic";
 }
 
 using Json = nlohmann::ordered_json;

@@ -175,13 +175,15 @@ void add_method_options(CLI::App& command, MethodSettings& method) {
                   check_culling(text);
                   method.culling = text;
               });
-    add_value(command, group, "--visibility", "stochastic|accumulation|interleaved|raytrace",
+    add_value(command, group, "--visibility", "stochastic|accumulation|interleaved|raytrace|micropolygon",
               "How visible surfaces are found (default stochastic)", [&](const std::string& text) {
-                  method.visibility = parse_choice<VisibilityMethod>("--visibility", text,
-                                                                     {{"stochastic", VisibilityMethod::kStochastic},
-                                                                      {"accumulation", VisibilityMethod::kAccumulation},
-                                                                      {"interleaved", VisibilityMethod::kInterleaved},
-                                                                      {"raytrace", VisibilityMethod::kRaytrace}});
+                  method.visibility =
+                      parse_choice<VisibilityMethod>("--visibility", text,
+                                                     {{"stochastic", VisibilityMethod::kStochastic},
+                                                      {"accumulation", VisibilityMethod::kAccumulation},
+                                                      {"interleaved", VisibilityMethod::kInterleaved},
+                                                      {"raytrace", VisibilityMethod::kRaytrace},
+                                                      {"micropolygon", VisibilityMethod::kMicropolygon}});
               });
     add_partly_built(command, group, "--backend", "What computes", "cpu", {"gl"});
     add_partly_built(command, group, "--shading", "How often visible surfaces are shaded", "pixel",
