@@ -11,6 +11,7 @@
 #include "lab/pixels.h"
 #include "lab/plot.h"
 #include "lab/walk.h"
+#include "peer/posed_picture.h"
 #include "render/visibility.h"
 
 namespace pentaprism {
@@ -131,11 +132,12 @@ TEST(Bench, APartOfTheTilesIsAlwaysTheSameAndNeedsAboutTheTestsAskedFor) {
     const Scene scene = make_builtin_scene("cubes");
     const PosedPicture picture = pose_picture(scene, settings, 24);
     const KeepGoing go = [](const std::string&) { return true; };
-    FrameWalk all(picture, settings.method, 0, go);
+    FrameWalk all(picture.frame, picture.samples, settings.method, 0, go);
     all.make_reference();
     const std::int64_t tests = all.count("none", nullptr).cover.tested;
     EXPECT_EQ(all.share(), 1.0);
-    FrameWalk limited(picture, settings.method, tests / 4, go), again(picture, settings.method, tests / 4, go);
+    FrameWalk limited(picture.frame, picture.samples, settings.method, tests / 4, go),
+        again(picture.frame, picture.samples, settings.method, tests / 4, go);
     EXPECT_NEAR(limited.share(), 0.25, 0.01);
     EXPECT_EQ(limited.share(), again.share());
     limited.make_reference();
@@ -144,7 +146,7 @@ TEST(Bench, APartOfTheTilesIsAlwaysTheSameAndNeedsAboutTheTestsAskedFor) {
     EXPECT_EQ(counts.cover.tested, again.count("none", nullptr).cover.tested);
     EXPECT_NEAR(static_cast<double>(counts.cover.tested), tests / 4.0, tests / 16.0);
     EXPECT_EQ(counts.lost, 0);
-    FrameWalk least(picture, settings.method, 1, go);
+    FrameWalk least(picture.frame, picture.samples, settings.method, 1, go);
     EXPECT_EQ(least.samples(), 32 * 32 * 4);
 }
 
@@ -153,7 +155,7 @@ TEST(Bench, SetupAsksEveryQuestionAndTestsNothing) {
     RenderSettings settings = small_plan().settings;
     settings.camera.fstop = 2.0;
     const PosedPicture picture = pose_picture(scene, settings, 24);
-    FrameWalk walk(picture, settings.method, 0, [](const std::string&) { return true; });
+    FrameWalk walk(picture.frame, picture.samples, settings.method, 0, [](const std::string&) { return true; });
     for (const char* method : {"none", "improved-dual-space", "improved-dual-space@tile+none@bucket"}) {
         const CoverCounts setup = walk.time_setup(method).cover, frame = walk.time_frame(method).cover;
         EXPECT_EQ(setup.tested, 0) << method;
