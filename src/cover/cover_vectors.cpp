@@ -51,13 +51,15 @@ CoverJobs choose(Seen seen) {
     return cover_jobs<Kind<kMoves, kDefocus, Seen::kBoth>>;
 }
 
-CoverJobs choose_kind(const LocalTriangle& T) {
+CoverJobs choose_kind(const LocalTriangle& T, Facing facing) {
     bool motion = T.segments > 1.0f, defocus = false;
     for (int k = 0; k < 3; ++k) {
         motion = motion || T.dx[k] != 0 || T.dy[k] != 0 || T.dw[k] != 0 || T.dc[k] != 0 || T.dz[k] != 0;
         defocus = defocus || T.qc[k] != 0 || T.dc[k] != 0;
     }
-    const Seen seen = T.two_sided ? Seen::kBoth : Seen::kFront;
+    const Seen seen = !T.two_sided || facing == Facing::kFront ? Seen::kFront
+                      : facing == Facing::kBack                ? Seen::kBack
+                                                               : Seen::kBoth;
     if (!motion) return defocus ? choose<Moves::kNot, true>(seen) : choose<Moves::kNot, false>(seen);
     if (T.segments > 1.0f)
         return defocus ? choose<Moves::kInPieces, true>(seen) : choose<Moves::kInPieces, false>(seen);
@@ -73,7 +75,7 @@ void cover_triangle(TileState& state, const BinnedTriangle& binned, float neares
         blocks = blocks_at_camera_plane(T, camera_plane_test, ratio, blocks);
         std::fill(masks, masks + state.stratum_count, ~0ull);
         const std::size_t jobs = list_jobs(state, masks, blocks, nearest);
-        choose_kind(T)(state, T, nullptr, jobs);
+        choose_kind(T, binned.facing)(state, T, nullptr, jobs);
         return;
     }
     const HalfPlanes H = half_planes(T, ratio);
@@ -84,7 +86,7 @@ void cover_triangle(TileState& state, const BinnedTriangle& binned, float neares
     boxes_of_strata(state, limits, masks);
     if (refine) refuse_blocks_by_edges(state, H, limits, masks);
     const std::size_t jobs = list_jobs(state, masks, blocks, nearest);
-    if (jobs != 0) choose_kind(T)(state, T, &H, jobs);
+    if (jobs != 0) choose_kind(T, binned.facing)(state, T, &H, jobs);
 }
 
 // Farthest depth that any of the tile's samples still shows.
