@@ -10,6 +10,7 @@ namespace pentaprism {
 
 enum class Filter : std::uint8_t { kBox, kTent, kGaussian, kBlackmanHarris };
 enum class ToneMap : std::uint8_t { kNone, kAces, kFilmic };
+enum class ShadowMode : std::uint8_t { kOff, kStill, kMoving };
 enum class ShutterPosition : std::uint8_t { kStart, kCenter, kEnd };
 
 struct ImageSettings {
@@ -51,11 +52,12 @@ struct AnimationSettings {
 };
 
 struct MethodSettings {
-    std::string culling = "auto";   ///< a name of culling_tests()
-    std::string shading = "pixel";  ///< how often visible surfaces are shaded
-    std::uint32_t seed = 0;         ///< of the sample pattern
-    int threads = 0;                ///< 0: all processors
-    int tile_size = 32;             ///< pixels, 8, 16 or 32: never changes the picture
+    std::string culling = "auto";              ///< a name of culling_tests()
+    std::string shading = "pixel";             ///< how often visible surfaces are shaded
+    ShadowMode shadows = ShadowMode::kMoving;  ///< kStill: of everything as it is at mid-shutter
+    std::uint32_t seed = 0;                    ///< of the sample pattern
+    int threads = 0;                           ///< 0: all processors
+    int tile_size = 32;                        ///< pixels, 8, 16 or 32: never changes the picture
 };
 
 struct RenderSettings {

@@ -138,6 +138,18 @@ const char* name_of(ShutterPosition position) {
     return "center";
 }
 
+const char* name_of(ShadowMode mode) {
+    switch (mode) {
+        case ShadowMode::kOff:
+            return "off";
+        case ShadowMode::kStill:
+            return "still";
+        case ShadowMode::kMoving:
+            break;
+    }
+    return "moving";
+}
+
 using Json = nlohmann::ordered_json;
 
 // Options that were not given are left out: what they come to is in the header's own attributes.
@@ -190,6 +202,7 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
     json["fps"] = animation.fps;
     json["animation"] = animation.animation;
     json["shading"] = method.shading;
+    json["shadows"] = name_of(method.shadows);
     json["seed"] = method.seed;
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
