@@ -23,6 +23,7 @@ std::string short_name(const std::string& scene) {
 }
 
 std::string percent(double ste) {
+    if (ste == 0.0) return "\u2013";  // nothing was tested, as by a ray tracer
     const double value = 100.0 * ste;
     return fmt::format("{:.{}f}", value, value < 1.0 ? 2 : 1);
 }
@@ -97,7 +98,8 @@ std::string card(const std::string& number, const std::string& text) {
 std::string cards(const BenchReport& report, const Lookup& lookup) {
     std::int64_t lost = 0, flawed = 0;
     double worst = 1.0, best = 1.0, least_auto = 0.0;
-    for (const BenchRow& row : report.rows) (row.conservative ? lost : flawed) += row.false_culls;
+    for (const BenchRow& row : report.rows)
+        if (!row.own_arithmetic) (row.conservative ? lost : flawed) += row.false_culls;
     for (const BenchRow& row : report.rows) {
         if (row.method != "auto") continue;
         const BenchRow* none = lookup.row(row.scene, row.effect, "none");

@@ -12,6 +12,7 @@
 #include "lab/images.h"
 #include "lab/machine.h"
 #include "lab/measure.h"
+#include "trace/tracer.h"
 
 namespace pentaprism {
 namespace {
@@ -27,7 +28,7 @@ std::vector<BenchEffect> chosen_effects(const BenchPlan& plan) {
 
 std::vector<std::string> chosen_methods(const BenchPlan& plan) {
     if (plan.methods.empty()) return bench_methods();
-    for (const std::string& method : plan.methods) check_culling(method);
+    for (const std::string& method : plan.methods) settings_of(method, plan.settings.method);
     return plan.methods;
 }
 
@@ -120,10 +121,13 @@ class Laboratory {
         const RenderSettings settings =
             resized(as_measured, std::min(as_measured.image.width, plan_.map_width), plan_.map_spp);
         const PosedPicture picture = pose_picture(scene, settings, frame);
-        FrameWalk walk(picture, settings.method, 0, keep_going);
+        FrameWalk walk(picture.frame, picture.samples, settings.method, 0, keep_going);
         walk.make_reference();
-        std::vector<MethodMap> maps(methods_.size());
-        for (std::size_t i = 0; i < methods_.size(); ++i) walk.count(methods_[i], &maps[i]);
+        std::vector<MethodMap> maps;
+        for (const std::string& method : methods_) {
+            // Other ways of sampling and the vector path record no maps.
+            if (settings_of(method, settings.method).culling != "auto") walk.count(method, &maps.emplace_back());
+        }
         RenderStats stats;
         const Picture rendered = render_picture(scene, settings, frame, stats);
         add_map_images(maps, rendered, plan_.map_spp, scene.name, effect.name, report_.images);
@@ -168,6 +172,8 @@ class Laboratory {
 std::vector<std::string> bench_methods() {
     std::vector<std::string> names;
     for (const CullingChoice& choice : culling_tests()) names.push_back(choice.name);
+    for (const char* visibility : {"accumulation", "interleaved", "micropolygon"}) names.emplace_back(visibility);
+    if (!tracer_name().empty()) names.emplace_back("raytrace");
     return names;
 }
 

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <mutex>
 #include <pentaprism/error.h>
+#include <utility>
 
 #include "base/parallel.h"
 
@@ -39,8 +40,29 @@ Culling refusing(Culling culling) {
     return culling;
 }
 
-PixelRect whole(const PosedPicture& picture) {
-    return {0, picture.frame.view.width, 0, picture.frame.view.height};
+constexpr std::pair<const char*, VisibilityMethod> kVisibilities[] = {
+    {"accumulation", VisibilityMethod::kAccumulation},
+    {"interleaved", VisibilityMethod::kInterleaved},
+    {"micropolygon", VisibilityMethod::kMicropolygon},
+    {"raytrace", VisibilityMethod::kRaytrace},
+};
+
+// Sums up the counts of tiles from all threads.
+class Adder {
+  public:
+    explicit Adder(CoverCounts& sum) : sum_(sum) {}
+    void add(const CoverCounts& counts) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        sum_.add(counts);
+    }
+
+  private:
+    CoverCounts& sum_;
+    std::mutex mutex_;
+};
+
+PixelRect whole(const Frame& frame) {
+    return {0, frame.view.width, 0, frame.view.height};
 }
 
 // Tests of a tile with the bounding box alone.
@@ -97,18 +119,31 @@ Seen middle_at(const Frame& frame, std::uint32_t triangle, int knot) {
 
 }  // namespace
 
-FrameWalk::FrameWalk(const PosedPicture& picture, const MethodSettings& settings, std::int64_t most_tests,
-                     KeepGoing keep_going)
-    : picture_(picture), settings_(settings), keep_going_(std::move(keep_going)) {
+MethodSettings settings_of(const std::string& method, MethodSettings settings) {
+    for (const auto& [name, visibility] : kVisibilities)
+        if (method == name) {
+            settings.visibility = visibility;
+            settings.culling = "auto";
+            return settings;
+        }
+    check_culling(method);
+    settings.visibility = VisibilityMethod::kStochastic;
+    settings.culling = method;
+    return settings;
+}
+
+FrameWalk::FrameWalk(const Frame& frame, const SampleTable& samples, const MethodSettings& settings,
+                     std::int64_t most_tests, KeepGoing keep_going)
+    : frame_(frame), samples_(samples), settings_(settings), keep_going_(std::move(keep_going)) {
     choose_tiles(most_tests);
 }
 
 void FrameWalk::choose_tiles(std::int64_t most_tests) {
     tiles_ = visibility_of("none").tiles();
     if (most_tests <= 0) return;
-    const Bins bins(picture_.frame, settings_.tile_size, whole(picture_));
+    const Bins bins(frame_, settings_.tile_size, whole(frame_));
     std::int64_t tests = 0;
-    for (const Tile& tile : tiles_) tests += box_tests(bins, tile, picture_.samples.spp());
+    for (const Tile& tile : tiles_) tests += box_tests(bins, tile, samples_.spp());
     if (tests <= most_tests) return;
     const auto all = static_cast<double>(tiles_.size());
     const double wanted = std::max(static_cast<double>(most_tests) / static_cast<double>(tests), 1.0 / all);
@@ -125,9 +160,7 @@ void FrameWalk::choose_tiles(std::int64_t most_tests) {
 }
 
 Visibility FrameWalk::visibility_of(const std::string& method) const {
-    MethodSettings settings = settings_;
-    settings.culling = method;
-    return Visibility(picture_.frame, picture_.samples, settings, whole(picture_));
+    return Visibility(frame_, samples_, settings_of(method, settings_), whole(frame_));
 }
 
 double FrameWalk::for_each_tile(const std::string& what, const TileWorkBody& body) {
@@ -148,7 +181,7 @@ double FrameWalk::for_each_tile(const std::string& what, const TileWorkBody& bod
 std::int64_t FrameWalk::samples() const {
     std::int64_t pixels = 0;
     for (const Tile& tile : tiles_) pixels += std::int64_t{tile.x1 - tile.x0} * (tile.y1 - tile.y0);
-    return pixels * picture_.samples.spp();
+    return pixels * samples_.spp();
 }
 
 void FrameWalk::make_reference() {
@@ -168,8 +201,8 @@ std::int64_t FrameWalk::reference_bytes() const {
 }
 
 FrameWalk::Counts FrameWalk::count(const std::string& method, MethodMap* map) {
-    const View& view = picture_.frame.view;
-    const int slots = picture_.samples.slots();
+    const View& view = frame_.view;
+    const int slots = samples_.slots();
     if (map != nullptr) {
         const std::size_t pixels = static_cast<std::size_t>(view.width) * view.height;
         *map = {method,
@@ -177,7 +210,8 @@ FrameWalk::Counts FrameWalk::count(const std::string& method, MethodMap* map) {
                 std::vector<std::uint32_t>(pixels)};
     }
     Counts result;
-    std::mutex adding;
+    Adder adder(result.cover);
+    std::atomic<std::int64_t> all_lost{0};
     const auto start = Clock::now();
     const Visibility visibility = visibility_of(method);
     const double bins_ms = milliseconds_since(start);
@@ -190,60 +224,71 @@ FrameWalk::Counts FrameWalk::count(const std::string& method, MethodMap* map) {
             ++lost;
             if (map != nullptr) ++map->lost[static_cast<std::size_t>(py) * view.width + px];
         });
-        const std::lock_guard<std::mutex> lock(adding);
-        result.cover.add(counts);
-        result.lost += lost;
+        all_lost += lost;
+        adder.add(counts);
     });
+    result.lost = all_lost;
     result.frame_ms = bins_ms + tiles_ms;
     return result;
 }
 
-double FrameWalk::time_frame(const std::string& method) {
+FrameWalk::Timed FrameWalk::time_frame(const std::string& method) {
+    Timed timed;
+    Adder adder(timed.cover);
     const auto start = Clock::now();
     const Visibility visibility = visibility_of(method);
-    const double bins_ms = milliseconds_since(start);
-    return bins_ms + for_each_tile(method + ": timing", [&](std::size_t i, Hits& hits) {
-               CoverCounts counts;
-               visibility.cover(tiles_[i], hits, counts);
-           });
+    timed.ms = milliseconds_since(start);
+    timed.ms += for_each_tile(method + ": timing", [&](std::size_t i, Hits& hits) {
+        CoverCounts counts;
+        visibility.cover(tiles_[i], hits, counts);
+        adder.add(counts);
+    });
+    return timed;
 }
 
-double FrameWalk::time_setup(const std::string& method) {
+FrameWalk::Timed FrameWalk::time_setup(const std::string& method) {
+    Timed timed;
+    const MethodSettings settings = settings_of(method, settings_);
     const auto start = Clock::now();
-    const Bins bins(picture_.frame, settings_.tile_size, whole(picture_));
-    const double bins_ms = milliseconds_since(start);
-    if (method == "auto") return bins_ms;
-    const Culling culling = refusing(parse_culling(method));
-    return bins_ms + for_each_tile(method + ": timing its questions", [&](std::size_t i, Hits& hits) {
-               const Tile& tile = tiles_[i];
-               hits.reset(picture_.samples.slots());
-               CoverCounts counts;
-               cover_with_test(
-                   {picture_.frame, picture_.samples, bins.triangles(), bins.tile(tile.x0, tile.y0), tile, nullptr},
-                   culling, hits, counts);
-           });
+    if (settings.culling == "auto") {
+        const Visibility visibility = visibility_of(method);
+        timed.ms = milliseconds_since(start);
+        return timed;
+    }
+    const Bins bins(frame_, settings_.tile_size, whole(frame_));
+    timed.ms = milliseconds_since(start);
+    Adder adder(timed.cover);
+    const Culling culling = refusing(parse_culling(settings.culling));
+    timed.ms += for_each_tile(method + ": timing its questions", [&](std::size_t i, Hits& hits) {
+        const Tile& tile = tiles_[i];
+        hits.reset(samples_.slots());
+        CoverCounts counts;
+        cover_with_test({frame_, samples_, bins.triangles(), bins.tile(tile.x0, tile.y0), tile, nullptr}, culling, hits,
+                        counts);
+        adder.add(counts);
+    });
+    return timed;
 }
 
 BenchCell FrameWalk::describe() {
     struct Sums {
         double samples = 0, hits = 0, motion = 0, blur = 0;
     };
-    const Frame& frame = picture_.frame;
-    const Visibility visibility = visibility_of("auto");
+    const Visibility visibility = visibility_of(samples_.pattern() == SamplePattern::kFree ? "auto" : "none");
     const std::vector<Tile>& all = visibility.tiles();
     std::vector<Sums> sums(all.size());  // added up in the order of tiles, so that the result is always the same
     parallel_for(all.size(), [&](std::size_t i) {
         const auto hits = buffers_.lease();
         CoverCounts counts;
         visibility.cover(all[i], *hits, counts);
-        for_each_sample(all[i], picture_.samples.slots(), [&](int px, int py, std::size_t s) {
+        for_each_sample(all[i], samples_.slots(), [&](int px, int py, std::size_t s) {
             if ((px + py) % 4 != 0) return;  // a quarter of the pixels says as much
             ++sums[i].samples;
             const std::uint32_t triangle = hits->triangle[s];
             if (triangle == kNoTriangle) return;
             ++sums[i].hits;
-            const Seen open = middle_at(frame, triangle, 0),
-                       close = middle_at(frame, triangle, frame.parts[frame.part_of[triangle]].segments);
+            const Seen open = middle_at(frame_, triangle, 0),
+                       close = middle_at(frame_, triangle, frame_.parts[frame_.part_of[triangle]].segments);
             sums[i].motion += std::hypot(close.x - open.x, close.y - open.y);
             sums[i].blur += 0.5 * (open.radius + close.radius);
         });

@@ -6,7 +6,6 @@
 #include <pentaprism/bench.h>
 
 #include "base/pool.h"
-#include "peer/posed_picture.h"
 #include "render/visibility.h"
 
 namespace pentaprism {
@@ -21,11 +20,16 @@ struct MethodMap {
     std::vector<std::uint32_t> lost;
 };
 
+/// The settings of a method of the laboratory: a value of `--culling` or of `--visibility`. Throws Error(kUsage) for
+/// what is neither.
+MethodSettings settings_of(const std::string& method, MethodSettings settings);
+
 class FrameWalk {
   public:
-    /// `picture` must outlive the walk. Of a picture on which the bounding box alone would need more than `most_tests`
-    /// exact tests, only as many tiles are walked as need about so many, spread evenly; 0: no limit.
-    FrameWalk(const PosedPicture& picture, const MethodSettings& settings, std::int64_t most_tests,
+    /// Frame and samples must outlive the walk, and the methods it is asked for must be ones that take such samples
+    /// (render/visibility.h, make_samples). Of a picture on which the bounding box alone would need more than
+    /// `most_tests` exact tests, only as many tiles are walked as need about so many, spread evenly; 0: no limit.
+    FrameWalk(const Frame& frame, const SampleTable& samples, const MethodSettings& settings, std::int64_t most_tests,
               KeepGoing keep_going);
 
     /// Part of the picture's tiles that is walked.
@@ -46,11 +50,14 @@ class FrameWalk {
     /// `map`, of the whole picture, may be null.
     Counts count(const std::string& method, MethodMap* map);
 
-    /// Milliseconds of a whole frame: bounds and bins, and the tiles' time over share().
-    double time_frame(const std::string& method);
+    struct Timed {
+        double ms = 0.0;  ///< of a whole frame: bounds and bins, and the tiles' time over share()
+        CoverCounts cover;
+    };
+    Timed time_frame(const std::string& method);
 
-    /// The same of all that comes before exact tests (BenchRow::setup_ms).
-    double time_setup(const std::string& method);
+    /// The same of all that comes before exact tests (BenchRow::setup_ms): nothing is tested.
+    Timed time_setup(const std::string& method);
 
     /// Motion, blur and coverage of the whole picture.
     BenchCell describe();
@@ -61,7 +68,8 @@ class FrameWalk {
     void choose_tiles(std::int64_t most_tests);
     double for_each_tile(const std::string& what, const TileWorkBody& body);
 
-    const PosedPicture& picture_;
+    const Frame& frame_;
+    const SampleTable& samples_;
     MethodSettings settings_;
     KeepGoing keep_going_;
     double share_ = 1.0;
