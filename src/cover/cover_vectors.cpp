@@ -81,7 +81,9 @@ void cover_triangle(TileState& state, const BinnedTriangle& binned, float neares
     const HalfPlanes H = half_planes(T, ratio);
     StratumLimits limits;
     // Many blocks in many strata: worth a closer look.
-    const bool refine = std::popcount(blocks) >= kWorthRefining && H.smaller_side > kLargeTriangle;
+    const int block_count = std::popcount(blocks);
+    const bool refine = (block_count >= kWorthRefining && H.smaller_side > kLargeTriangle) ||
+                        (block_count > 1 && state.stratum_count == 1);
     bound_strata(state, T, H, refine ? HalfPlanes::kCount : HalfPlanes::kEdges, limits);
     boxes_of_strata(state, limits, masks);
     if (refine) refuse_blocks_by_edges(state, H, limits, masks);

@@ -54,7 +54,8 @@ inline float block_y(int block) {
 // The half-planes over strata: for a sample of stratum s that is hit, n.h <= limit[plane][s].
 struct StratumLimits {
     HWY_ALIGN float limit[HalfPlanes::kCount][kMaxStrata];
-    HWY_ALIGN std::int32_t outside[kMaxStrata];  // -1: has no time in this segment
+    HWY_ALIGN std::int32_t outside[kMaxStrata];        // -1: has no time in this segment
+    int groups[kMaxStrata / kWidth], group_count = 0;  // vectors of strata (the first of each) some of which have
 };
 
 HWY_INLINE void bound_strata(const TileState& state, const LocalTriangle& T, const HalfPlanes& H, int planes,
@@ -68,15 +69,19 @@ HWY_INLINE void bound_strata(const TileState& state, const LocalTriangle& T, con
     for (int first = 0; first < state.stratum_count; first += kWidth) {
         const Vec t0 = hn::Max(hn::Load(f, state.t[0] + first), begin);
         const Vec t1 = hn::Min(hn::Load(f, state.t[1] + first), end);
+        const Mask outside = hn::Gt(t0, t1);
+        if (hn::AllTrue(f, outside)) continue;
+        out.groups[out.group_count++] = first;
         hn::Store(t0, f, t[0] + first);
         hn::Store(t1, f, t[1] + first);
-        hn::Store(hn::BitCast(i, hn::VecFromMask(f, hn::Gt(t0, t1))), i, out.outside + first);
+        hn::Store(hn::BitCast(i, hn::VecFromMask(f, outside)), i, out.outside + first);
     }
     for (int p = 0; p < planes; ++p) {
         // Signs are unpredictable: they choose an array, not a path.
         const float *const te = t[H.e[p] > 0], *const tu = state.u[H.ku[p] > 0], *const tv = state.v[H.kv[p] > 0];
         const Vec e = hn::Set(f, H.e[p]), ku = hn::Set(f, H.ku[p]), kv = hn::Set(f, H.kv[p]), c = hn::Set(f, H.f[p]);
-        for (int first = 0; first < state.stratum_count; first += kWidth) {
+        for (int g = 0; g < out.group_count; ++g) {
+            const int first = out.groups[g];
             const Vec limit = hn::MulAdd(ku, hn::Load(f, tu + first), hn::MulAdd(e, hn::Load(f, te + first), c));
             hn::Store(hn::MulAdd(kv, hn::Load(f, tv + first), limit), f, out.limit[p] + first);
         }
@@ -92,7 +97,8 @@ HWY_INLINE void boxes_of_strata(const TileState& state, const StratumLimits& lim
     HWY_ALIGN std::int32_t columns[kMaxStrata], rows[kMaxStrata];
     const auto block = [&](Vec v)
                            HWY_ATTR { return hn::ConvertTo(i, hn::Min(hn::Max(hn::Mul(v, to_blocks), zero), seven)); };
-    for (int first = 0; first < state.stratum_count; first += kWidth) {
+    for (int g = 0; g < limits.group_count; ++g) {
+        const int first = limits.groups[g];
         // From the cell's top left corner, y down.
         const Vec x0 = hn::Sub(half, hn::Load(f, limits.limit[HalfPlanes::kLeft] + first));
         const Vec x1 = hn::Add(half, hn::Load(f, limits.limit[HalfPlanes::kRight] + first));
@@ -108,7 +114,11 @@ HWY_INLINE void boxes_of_strata(const TileState& state, const StratumLimits& lim
                   columns + first);
         hn::Store(hn::Add(hn::ShiftLeft<3>(block(y0)), block(y1)), i, rows + first);
     }
-    for (int s = 0; s < state.stratum_count; ++s) masks[s] = kColumns[columns[s]] & kRows[rows[s]];
+    if (limits.group_count * kWidth < state.stratum_count) std::fill(masks, masks + state.stratum_count, 0);
+    for (int g = 0; g < limits.group_count; ++g) {
+        const int last = std::min(limits.groups[g] + kWidth, state.stratum_count);
+        for (int s = limits.groups[g]; s < last; ++s) masks[s] = kColumns[columns[s]] & kRows[rows[s]];
+    }
 }
 
 // For each of the 64 blocks whether a condition that compares sixteen of them at a time holds.

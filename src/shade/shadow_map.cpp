@@ -228,7 +228,8 @@ std::unique_ptr<float[]> ShadowMap::render(int exponent, int cx, int cy, const L
         if (rect.empty()) continue;
         scratch.binned.push_back({box.triangle, box.segment, static_cast<std::uint16_t>(rect.x0),
                                   static_cast<std::uint16_t>(rect.x1), static_cast<std::uint16_t>(rect.y0),
-                                  static_cast<std::uint16_t>(rect.y1), frame_.view.perspective ? box.nearest : 1.0f});
+                                  static_cast<std::uint16_t>(rect.y1), Facing::kMixed,
+                                  frame_.view.perspective ? box.nearest : 1.0f});
     }
     scratch.order.resize(scratch.binned.size());
     std::iota(scratch.order.begin(), scratch.order.end(), 0u);
