@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "bound/facing.h"
 #include "bound/screen_bounds.h"
 #include "frame/frame.h"
 
@@ -16,6 +17,7 @@ struct BinnedTriangle {
     std::uint32_t triangle;
     std::uint16_t segment;
     std::uint16_t x0, x1, y0, y1;  ///< pixels it may cover, half open
+    Facing facing;                 ///< the side that every sample sees, or kMixed
     float nearest_w;               ///< no sample sees it at a smaller w
 };
 

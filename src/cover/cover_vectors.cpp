@@ -33,7 +33,7 @@ namespace {
 
 // Edges are asked for blocks of triangles of this many pixels and bins of this many blocks: measured
 // (docs/develop/performance.md).
-constexpr float kLargeTriangle = 12.0f;
+constexpr float kLargeTriangle = 6.0f;
 constexpr int kWorthRefining = 6;
 
 using CoverJobs = void (*)(TileState&, const LocalTriangle&, const HalfPlanes*, std::size_t);
@@ -51,13 +51,15 @@ CoverJobs choose(Seen seen) {
     return cover_jobs<Kind<kMoves, kDefocus, Seen::kBoth>>;
 }
 
-CoverJobs choose_kind(const LocalTriangle& T) {
+CoverJobs choose_kind(const LocalTriangle& T, Facing facing) {
     bool motion = T.segments > 1.0f, defocus = false;
     for (int k = 0; k < 3; ++k) {
         motion = motion || T.dx[k] != 0 || T.dy[k] != 0 || T.dw[k] != 0 || T.dc[k] != 0 || T.dz[k] != 0;
         defocus = defocus || T.qc[k] != 0 || T.dc[k] != 0;
     }
-    const Seen seen = T.two_sided ? Seen::kBoth : Seen::kFront;
+    const Seen seen = !T.two_sided || facing == Facing::kFront ? Seen::kFront
+                      : facing == Facing::kBack                ? Seen::kBack
+                                                               : Seen::kBoth;
     if (!motion) return defocus ? choose<Moves::kNot, true>(seen) : choose<Moves::kNot, false>(seen);
     if (T.segments > 1.0f)
         return defocus ? choose<Moves::kInPieces, true>(seen) : choose<Moves::kInPieces, false>(seen);
@@ -73,7 +75,7 @@ void cover_triangle(TileState& state, const BinnedTriangle& binned, float neares
         blocks = blocks_at_camera_plane(T, camera_plane_test, ratio, blocks);
         std::fill(masks, masks + state.stratum_count, ~0ull);
         const std::size_t jobs = list_jobs(state, masks, blocks, nearest);
-        choose_kind(T)(state, T, nullptr, jobs);
+        choose_kind(T, binned.facing)(state, T, nullptr, jobs);
         return;
     }
     const HalfPlanes H = half_planes(T, ratio);
@@ -84,7 +86,7 @@ void cover_triangle(TileState& state, const BinnedTriangle& binned, float neares
     boxes_of_strata(state, limits, masks);
     if (refine) refuse_blocks_by_edges(state, H, limits, masks);
     const std::size_t jobs = list_jobs(state, masks, blocks, nearest);
-    if (jobs != 0) choose_kind(T)(state, T, &H, jobs);
+    if (jobs != 0) choose_kind(T, binned.facing)(state, T, &H, jobs);
 }
 
 // Farthest depth that any of the tile's samples still shows.
@@ -97,21 +99,23 @@ void update_tile_farthest(TileState& state) {
     state.tile_farthest = hn::GetLane(hn::MaxOfLanes(f, farthest));
 }
 
-// The tile's triangles by their nearest w, and no sample sees one nearer than `nearest`.
-struct Ordered {
-    float nearest;
-    std::uint32_t entry;
-};
-std::vector<Ordered> front_to_back(const TileWork& work) {
-    // Rounding may put a hit a few ulps in front of the nearest vertex. An orthographic w says nothing about depth.
-    const float margin = 1.0f - 16.0f * kUnitRoundoff;
-    std::vector<Ordered> order;
+// No sample sees the triangle at a smaller w. Rounding may put a hit a few ulps in front of the nearest vertex; an
+// orthographic w says nothing about depth.
+float nearest_depth(const TileWork& work, std::uint32_t entry) {
+    constexpr float kMargin = 1.0f - 16.0f * kUnitRoundoff;
+    return work.frame.view.perspective ? work.triangles[entry].nearest_w * kMargin : -INFINITY;
+}
+
+// The tile's triangles by their nearest w. As one number, the bits of the (positive) float above those of the place in
+// the list, they sort twice as fast.
+std::vector<std::uint64_t> front_to_back(const TileWork& work) {
+    std::vector<std::uint64_t> order;
     order.reserve(work.list.size());
-    for (const std::uint32_t entry : work.list)
-        order.push_back({work.frame.view.perspective ? work.triangles[entry].nearest_w * margin : -INFINITY, entry});
-    std::sort(order.begin(), order.end(), [](const Ordered& a, const Ordered& b) {
-        return a.nearest < b.nearest || (a.nearest == b.nearest && a.entry < b.entry);
-    });
+    for (const std::uint32_t entry : work.list) {
+        const float nearest = work.frame.view.perspective ? work.triangles[entry].nearest_w : 0.0f;
+        order.push_back(std::uint64_t{std::bit_cast<std::uint32_t>(nearest)} << 32 | entry);
+    }
+    std::sort(order.begin(), order.end());
     return order;
 }
 
@@ -119,9 +123,11 @@ void cover_front_to_back(TileState& state) {
     constexpr int kBetweenUpdates = 16;
     const CullTest& camera_plane_test = *find_cull_test("improved-dual-space");
     int until_update = kBetweenUpdates;
-    for (const Ordered& next : front_to_back(state.work)) {
-        if (next.nearest > state.tile_farthest) return;  // so are all that follow
-        cover_triangle(state, state.work.triangles[next.entry], next.nearest, camera_plane_test);
+    for (const std::uint64_t next : front_to_back(state.work)) {
+        const std::uint32_t entry = static_cast<std::uint32_t>(next);
+        const float nearest = nearest_depth(state.work, entry);
+        if (nearest > state.tile_farthest) return;  // so are all that follow
+        cover_triangle(state, state.work.triangles[entry], nearest, camera_plane_test);
         if (--until_update == 0) {
             update_tile_farthest(state);
             until_update = kBetweenUpdates;
@@ -141,8 +147,8 @@ void cover_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
     state.stratum_count = static_cast<int>(domains.size());
     for (int s = 0; s < kMaxStrata; ++s) {
         const Domain d = s < state.stratum_count ? domains[s] : Domain{0, 0, 0, 0, 2, -2};
-        state.u0[s] = d.u0, state.u1[s] = d.u1, state.v0[s] = d.v0, state.v1[s] = d.v1, state.t0[s] = d.t0,
-        state.t1[s] = d.t1;
+        state.u[0][s] = d.u0, state.v[0][s] = d.v0, state.t[0][s] = d.t0;
+        state.u[1][s] = d.u1, state.v[1][s] = d.v1, state.t[1][s] = d.t1;
     }
     state.tile_blocks = column_mask((work.tile.x0 - left) / kBlockSize, (work.tile.x1 - 1 - left) / kBlockSize) &
                         row_mask((work.tile.y0 - top) / kBlockSize, (work.tile.y1 - 1 - top) / kBlockSize);

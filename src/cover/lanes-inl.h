@@ -9,7 +9,9 @@
 #endif
 
 #include <cmath>
+#include <cstring>
 #include <hwy/highway.h>
+#include <type_traits>
 #include <vector>
 
 #include "cover/cover.h"
@@ -27,6 +29,16 @@ using U = hn::RebindToUnsigned<F>;
 constexpr int kWidth = static_cast<int>(hn::MaxLanes(F()));  // lanes of one Vec
 constexpr float kUnitRoundoff = 1.0f / 16777216.0f;
 constexpr int kMaxStrata = 64;
+
+// One bit for each lane. Stored as wide as it is loaded again, so that it need not go through memory.
+HWY_INLINE std::uint64_t bits_of(F f, Mask mask) {
+    using Bits = std::conditional_t<(kWidth > 8), std::uint16_t, std::uint8_t>;
+    std::uint8_t bytes[8];
+    hn::StoreMaskBits(f, mask, bytes);
+    Bits bits;
+    std::memcpy(&bits, bytes, sizeof bits);
+    return bits;
+}
 
 // One vector of samples: slot * kBlocksPerCell + block.
 using Job = std::uint32_t;
@@ -46,8 +58,8 @@ struct TileState {
     AlignedVector<float> farthest;          // by job: largest depth stored so far
     std::vector<Job> jobs;
     float tile_farthest = INFINITY;  // no smaller than any of `farthest`
-    // Domains of the strata, structure of arrays, padded to whole vectors with empty ones.
-    HWY_ALIGN float u0[kMaxStrata], u1[kMaxStrata], v0[kMaxStrata], v1[kMaxStrata], t0[kMaxStrata], t1[kMaxStrata];
+    // Least [0] and greatest [1] coordinates of the strata, padded to whole vectors with empty ones.
+    HWY_ALIGN float u[2][kMaxStrata], v[2][kMaxStrata], t[2][kMaxStrata];
     int stratum_count = 0;
     HWY_ALIGN float column_of_block[kBlocksPerCell], row_of_block[kBlocksPerCell];
 

@@ -9,7 +9,6 @@
 #endif
 
 #include <bit>
-#include <cstring>
 
 #include "cover/lanes-inl.h"
 #include "frame/opacity.h"
@@ -19,14 +18,6 @@ namespace pentaprism {
 namespace HWY_NAMESPACE {
 
 using IntVec = hn::Vec<I>;
-
-HWY_INLINE std::uint32_t bits_of(F f, Mask mask) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(f, mask, bytes);
-    std::uint32_t bits;
-    std::memcpy(&bits, bytes, sizeof bits);
-    return bits;
-}
 
 HWY_INLINE Vec mixed(F f, const Vec b[3], float p, float q, float r) {
     return hn::Add(hn::Add(hn::Mul(b[0], hn::Set(f, p)), hn::Mul(b[1], hn::Set(f, q))), hn::Mul(b[2], hn::Set(f, r)));
@@ -56,7 +47,7 @@ HWY_INLINE IntVec wrapped(I i, Wrap wrap, IntVec texel, int size) {
     return hn::IfThenElse(hn::Gt(texel, last), hn::Sub(hn::Set(i, 2 * size - 1), texel), texel);
 }
 
-HWY_INLINE Vec texture_alpha(F f, const OpacityTerms& terms, Vec s, Vec t, std::uint32_t lanes) {
+HWY_INLINE Vec texture_alpha(F f, const OpacityTerms& terms, Vec s, Vec t, std::uint64_t lanes) {
     const I i;
     const TextureRef& ref = *terms.ref;
     const int width = terms.texture->width(), height = terms.texture->height();
@@ -75,7 +66,7 @@ HWY_INLINE Vec texture_alpha(F f, const OpacityTerms& terms, Vec s, Vec t, std::
     HWY_ALIGN float code[4][kLanes] = {};
     hn::Store(hn::Add(upper, left), i, at[0]);
     if (ref.nearest) {
-        for (std::uint32_t m = lanes; m != 0; m &= m - 1) {
+        for (std::uint64_t m = lanes; m != 0; m &= m - 1) {
             const int k = std::countr_zero(m);
             code[0][k] = codes[static_cast<std::uint32_t>(at[0][k])];
         }
@@ -86,7 +77,7 @@ HWY_INLINE Vec texture_alpha(F f, const OpacityTerms& terms, Vec s, Vec t, std::
     hn::Store(hn::Add(upper, right), i, at[1]);
     hn::Store(hn::Add(lower, left), i, at[2]);
     hn::Store(hn::Add(lower, right), i, at[3]);
-    for (std::uint32_t m = lanes; m != 0; m &= m - 1) {
+    for (std::uint64_t m = lanes; m != 0; m &= m - 1) {
         const int k = std::countr_zero(m);
         for (int tap = 0; tap < 4; ++tap) code[tap][k] = codes[static_cast<std::uint32_t>(at[tap][k])];
     }
@@ -106,7 +97,7 @@ HWY_NOINLINE Mask exceeds_threshold(F f, const TileState& state, std::uint32_t t
     const int bx = state.work.tile.cell_x() * kCellBlocks + block % kCellBlocks,
               by = state.work.tile.cell_y() * kCellBlocks + block / kCellBlocks;
     const std::uint16_t* indices = &state.work.samples.indices(bx, by)[static_cast<std::size_t>(slot) * kLanes + lane];
-    for (std::uint32_t m = bits_of(f, open); m != 0; m &= m - 1) {
+    for (std::uint64_t m = bits_of(f, open); m != 0; m &= m - 1) {
         const int k = std::countr_zero(m);
         const int px = bx * kBlockSize + (lane + k) % kBlockSize, py = by * kBlockSize + (lane + k) / kBlockSize;
         threshold[k] = opacity_threshold(triangle, px, py, indices[k], state.work.samples.spp());

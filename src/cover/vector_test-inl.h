@@ -233,6 +233,7 @@ void write_hits(TileState& state, const LocalTriangle& T, std::size_t count) {
         }
         state.farthest[job] = hn::GetLane(hn::MaxOfLanes(f, farthest));
     }
+    state.counts.tested += static_cast<std::int64_t>(count) * kLanes;
     state.counts.covered += covered;
 }
 

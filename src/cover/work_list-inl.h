@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cstring>
 
 #include "cover/half_planes-inl.h"
 #include "cover/lanes-inl.h"
@@ -65,14 +64,21 @@ HWY_INLINE void bound_strata(const TileState& state, const LocalTriangle& T, con
     constexpr float kWiden = 1e-6f;  // the segment's ends are rounded
     const Vec begin = hn::Set(f, T.segment / T.segments - kWiden),
               end = hn::Set(f, (T.segment + 1) / T.segments + kWiden);
+    HWY_ALIGN float t[2][kMaxStrata];  // of the strata, within the segment
     for (int first = 0; first < state.stratum_count; first += kWidth) {
-        const Vec t0 = hn::Max(hn::Load(f, state.t0 + first), begin), t1 = hn::Min(hn::Load(f, state.t1 + first), end);
+        const Vec t0 = hn::Max(hn::Load(f, state.t[0] + first), begin);
+        const Vec t1 = hn::Min(hn::Load(f, state.t[1] + first), end);
+        hn::Store(t0, f, t[0] + first);
+        hn::Store(t1, f, t[1] + first);
         hn::Store(hn::BitCast(i, hn::VecFromMask(f, hn::Gt(t0, t1))), i, out.outside + first);
-        for (int p = 0; p < planes; ++p) {
-            Vec limit = hn::MulAdd(hn::Set(f, H.e[p]), H.e[p] > 0 ? t1 : t0, hn::Set(f, H.f[p]));
-            limit = hn::MulAdd(hn::Set(f, H.ku[p]), hn::Load(f, (H.ku[p] > 0 ? state.u1 : state.u0) + first), limit);
-            limit = hn::MulAdd(hn::Set(f, H.kv[p]), hn::Load(f, (H.kv[p] > 0 ? state.v1 : state.v0) + first), limit);
-            hn::Store(limit, f, out.limit[p] + first);
+    }
+    for (int p = 0; p < planes; ++p) {
+        // Signs are unpredictable: they choose an array, not a path.
+        const float *const te = t[H.e[p] > 0], *const tu = state.u[H.ku[p] > 0], *const tv = state.v[H.kv[p] > 0];
+        const Vec e = hn::Set(f, H.e[p]), ku = hn::Set(f, H.ku[p]), kv = hn::Set(f, H.kv[p]), c = hn::Set(f, H.f[p]);
+        for (int first = 0; first < state.stratum_count; first += kWidth) {
+            const Vec limit = hn::MulAdd(ku, hn::Load(f, tu + first), hn::MulAdd(e, hn::Load(f, te + first), c));
+            hn::Store(hn::MulAdd(kv, hn::Load(f, tv + first), limit), f, out.limit[p] + first);
         }
     }
 }
@@ -108,12 +114,9 @@ HWY_INLINE void boxes_of_strata(const TileState& state, const StratumLimits& lim
 // For each of the 64 blocks whether a condition that compares sixteen of them at a time holds.
 template <class Condition>
 HWY_INLINE std::uint64_t for_blocks(Condition condition) {
-    alignas(8) std::uint8_t bits[8 + 8] = {};
     const F f;
-    for (int first = 0; first < kBlocksPerCell; first += kWidth)
-        hn::StoreMaskBits(f, condition(first), bits + first / 8);
-    std::uint64_t mask;
-    std::memcpy(&mask, bits, sizeof mask);
+    std::uint64_t mask = 0;
+    for (int first = 0; first < kBlocksPerCell; first += kWidth) mask |= bits_of(f, condition(first)) << first;
     return mask;
 }
 

@@ -164,6 +164,7 @@ Frame pose_frame(const Scene& scene, const View& view, std::span<const Index> an
     Frame frame;
     frame.scene = &scene;
     frame.view = view;
+    frame.animations.assign(animations.begin(), animations.end());
     Moments moments(scene, view, animations);
     frame.middle = moments.at(0.5).pose;
     const bool shutter_open = view.shutter.close > view.shutter.open;

@@ -12,9 +12,6 @@ done <<'END'
 --shutter-curve trapezoid:0.1,0.9
 --rolling-shutter top
 --rolling-shutter-duration 0.5
---visibility accumulation
---visibility interleaved
---visibility raytrace
 --backend gl
 --shading sample
 --shading decoupled

@@ -45,14 +45,17 @@ constexpr Workload kWorkloads[] = {{"still 5", 5, false, false},         {"still
                                    {"both 16, twice", 16, true, true, 2}};
 constexpr std::size_t kColumns = std::size(kWorkloads);
 
-// Percent. A value below 2 % is too rare an event to be compared closely.
+// Percent, of an independent implementation. A value below 2 % is too rare an event to be compared closely. Two rows
+// differ from it on purpose: our hull allows for a square lens, not a disk; our half-spaces also refuse where both
+// sides of a triangle may be seen.
 struct Row {
     const char* culling;
     std::array<double, kColumns> efficiency;
+    double least = 0.9, most = 1.1;  // of that
 };
 constexpr Row kRows[] = {
     {"bbox", {27.8, 36.6, 40.5, 1.0, 5.6, 20.3, 0.6, 3.7, 16.3, 0.2, 1.7, 10.2, 0.5}},
-    {"hull", {44.9, 73.8, 92.0, 3.4, 11.8, 36.1, 0.6, 4.4, 22.2, 0.3, 2.2, 13.7, 0.7}},
+    {"hull", {44.9, 73.8, 92.0, 3.4, 11.8, 36.1, 0.6, 4.4, 22.2, 0.3, 2.2, 13.7, 0.7}, 0.8},
     {"dual-space", {27.8, 36.6, 40.5, 28.2, 37.1, 41.1, 27.9, 36.7, 39.7, 1.8, 8.7, 24.6, 3.6}},
     {"dual-space@tile", {27.8, 36.6, 40.5, 6.6, 19.6, 34.0, 5.8, 18.2, 32.4, 1.0, 5.9, 20.7, 2.8}},
     {"improved-dual-space", {27.8, 36.6, 40.5, 28.2, 37.2, 41.1, 27.9, 36.7, 39.7, 27.1, 35.9, 39.3, 32.6}},
@@ -64,7 +67,7 @@ constexpr Row kRows[] = {
     {"ut-vt-lines", {27.8, 36.6, 40.5, 6.6, 19.6, 34.0, 5.8, 18.2, 32.4, 3.5, 13.5, 28.6, 10.2}},
     {"improved-dual-space@tile+hyperplane",
      {98.9, 99.9, 100.0, 67.5, 80.2, 89.7, 55.4, 77.1, 90.5, 9.7, 29.0, 56.9, 21.0}},
-    {"half-space", {28.3, 40.4, 64.0, 1.1, 6.5, 27.7, 3.5, 17.9, 48.3, 0.5, 3.6, 19.6, 1.2}},
+    {"half-space", {28.3, 40.4, 64.0, 1.1, 6.5, 27.7, 3.5, 17.9, 48.3, 0.5, 3.6, 19.6, 1.2}, 0.9, 1.25},
     {"improved-dual-space@pixel+hyperplane",
      {98.9, 99.9, 100.0, 69.1, 80.9, 89.9, 61.3, 78.8, 90.7, 28.5, 42.6, 60.7, 35.4}},
     {"improved-dual-space@tile+improved-dual-space",
@@ -182,7 +185,9 @@ struct Counts {
 };
 
 // A part of the tiles of a triangle speaks for all of them: neighbours would say nearly the same.
-constexpr double kSpeaking = 0.25;
+double speaking(const Workload& work) {
+    return work.size > 20 || work.blur > 1 ? 0.06 : work.size > 10 ? 0.15 : 0.25;
+}
 
 Counts count(Random& r, const Workload& work) {
     Counts counts;
@@ -204,7 +209,7 @@ Counts count(Random& r, const Workload& work) {
                     const int left = cx * kCellSize, top = cy * kCellSize;
                     const PixelRect in{std::max(rect.x0 - left, tx), std::min(rect.x1 - left, tx + kCullTileSize),
                                        std::max(rect.y0 - top, ty), std::min(rect.y1 - top, ty + kCullTileSize)};
-                    if (in.empty() || !r.chance(kSpeaking)) continue;
+                    if (in.empty() || !r.chance(speaking(work))) continue;
                     if (!begun)
                         for (Tested& row : rows)
                             row.begin(T, {-half - centre.x, half - centre.x, -half - centre.y, half - centre.y, whole});
@@ -257,7 +262,8 @@ TEST_P(CullingEfficiency, IsWhatIsKnownOfEachTest) {
         std::printf("%-46s %-16s %6.2f, known %6.2f (%+.1f %%)\n", kRows[k].culling, work.name, actual, expected,
                     100 * (actual / expected - 1));
         if (expected < 2.0) continue;
-        EXPECT_NEAR(actual, expected, 0.1 * expected) << kRows[k].culling << ", " << work.name;
+        EXPECT_GE(actual, kRows[k].least * expected) << kRows[k].culling << ", " << work.name;
+        EXPECT_LE(actual, kRows[k].most * expected) << kRows[k].culling << ", " << work.name;
     }
 }
 
