@@ -26,6 +26,7 @@ enum class Aov : std::uint8_t {
     kCoverage,
     kVariance
 };
+enum class ShadowMode : std::uint8_t { kOff, kStill, kMoving };
 enum class ShutterPosition : std::uint8_t { kStart, kCenter, kEnd };
 
 struct ImageSettings {
@@ -80,10 +81,11 @@ struct MethodSettings {
     VisibilityMethod visibility = VisibilityMethod::kStochastic;
     /// "auto" or a combination of culling_tests(); kRaytrace and kMicropolygon have no use for one: "auto" alone.
     std::string culling = "auto";
-    std::string shading = "pixel";  ///< how often visible surfaces are shaded
-    std::uint32_t seed = 0;         ///< of the sample pattern
-    int threads = 0;                ///< 0: all processors
-    int tile_size = 32;             ///< pixels, 8, 16 or 32: never changes the picture
+    std::string shading = "pixel";             ///< how often visible surfaces are shaded
+    ShadowMode shadows = ShadowMode::kMoving;  ///< kStill: of everything as it is at mid-shutter
+    std::uint32_t seed = 0;                    ///< of the sample pattern
+    int threads = 0;                           ///< 0: all processors
+    int tile_size = 32;                        ///< pixels, 8, 16 or 32: never changes the picture
 };
 
 struct RenderSettings {

@@ -165,6 +165,18 @@ const char* name_of(ShutterPosition position) {
     return "center";
 }
 
+const char* name_of(ShadowMode mode) {
+    switch (mode) {
+        case ShadowMode::kOff:
+            return "off";
+        case ShadowMode::kStill:
+            return "still";
+        case ShadowMode::kMoving:
+            break;
+    }
+    return "moving";
+}
+
 using Json = nlohmann::ordered_json;
 
 // Options that were not given are left out: what they come to is in the header's own attributes.
@@ -219,6 +231,7 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
     json["animation"] = animation.animation;
     json["visibility"] = name_of(method.visibility);
     json["shading"] = method.shading;
+    json["shadows"] = name_of(method.shadows);
     json["seed"] = method.seed;
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

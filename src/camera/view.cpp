@@ -164,11 +164,6 @@ glm::dmat4 world_to_camera(const View& view, const Pose& pose) {
     return glm::affineInverse(rigid);
 }
 
-glm::dvec4 to_raster_clip(const View& view, const glm::dvec3& p) {
-    const double depth = -p.z;
-    return {view.fx * p.x, view.fy * p.y, view.perspective ? depth : 1.0, depth};
-}
-
 View make_view(const Scene& scene, const RenderSettings& settings, double frame) {
     View view;
     view.width = settings.image.width;

@@ -57,7 +57,10 @@ struct View {
 glm::dmat4 world_to_camera(const View& view, const Pose& pose);
 
 /// A point of camera space in raster clip space: x, y, w and the depth z.
-glm::dvec4 to_raster_clip(const View& view, const glm::dvec3& camera_space);
+inline glm::dvec4 to_raster_clip(const View& view, const glm::dvec3& camera_space) {
+    const double depth = -camera_space.z;
+    return {view.fx * camera_space.x, view.fy * camera_space.y, view.perspective ? depth : 1.0, depth};
+}
 
 /// Resolves camera, lens and shutter of frame number `frame`. Throws Error(kUsage) for a camera, node or animation that
 /// the scene does not have.

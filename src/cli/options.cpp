@@ -188,6 +188,13 @@ void add_method_options(CLI::App& command, MethodSettings& method) {
     add_partly_built(command, group, "--backend", "What computes", "cpu", {"gl"});
     add_partly_built(command, group, "--shading", "How often visible surfaces are shaded", "pixel",
                      {"sample", "decoupled"});
+    add_value(command, group, "--shadows", "off|still|moving",
+              "Shadows: none, of mid-shutter, or at each time of the shutter (default moving)",
+              [&](const std::string& text) {
+                  method.shadows = parse_choice<ShadowMode>(
+                      "--shadows", text,
+                      {{"off", ShadowMode::kOff}, {"still", ShadowMode::kStill}, {"moving", ShadowMode::kMoving}});
+              });
     add_planned_value(command, group, "--sampler", "NAME", "Sample pattern");
     add_value(command, group, "--seed", "N", "Seed of the sample pattern (default 0)", [&](const std::string& text) {
         method.seed =

@@ -71,6 +71,10 @@ done <<'END'
 --frames 1,1 listed twice
 --frames 1-3 3 frames need a place for their number
 --culling psychic --culling: 'psychic' is not one of auto
+--culling none+psychic --culling: 'psychic' is not one of auto
+--culling none+ --culling: '' is not one of auto
+--culling none+auto 'auto' stands alone
+--culling hull@town --culling hull@town: 'town' is not one of tile, pixel, bucket
 --visibility xray --visibility
 --backend quantum --backend
 --shading never --shading

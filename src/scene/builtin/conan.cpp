@@ -554,6 +554,12 @@ Primitive gear(const ImplicitBody& body, Index material) {
     return all;
 }
 
+/// The point, or where the body pushes it out to.
+glm::dvec3 lifted(const ImplicitBody& body, glm::dvec3 p, double gap) {
+    for (int i = 0; i < 3; ++i) p += std::max(0.0, gap - body.distance(p)) * body.normal(p);
+    return p;
+}
+
 /// Fur: hairs as blades, on the surface p(u, v), pointing down its v.
 void add_fur(MeshBuilder& m, Random& random, int hairs, const Surface& p, double length, double width, glm::dvec3 dark,
              glm::dvec3 light) {
@@ -607,7 +613,8 @@ Primitive furs(const ImplicitBody& body, Index material, const FurBudget& budget
     const Surface kilt = [&](double u, double v) {
         const double a = kTwoPi * u;
         const glm::dvec3 waist = outside(body, {0.0, 0.95, -0.01}, {1.25 * std::sin(a), 0.0, std::cos(a)}, 0.006);
-        return waist + v * glm::dvec3(0.10 * std::sin(a), -0.22, (std::cos(a) > 0.0 ? 0.15 : 0.08) * std::cos(a));
+        const glm::dvec3 hem{0.10 * std::sin(a), -0.22, (std::cos(a) > 0.0 ? 0.15 : 0.08) * std::cos(a)};
+        return lifted(body, waist + v * hem, 0.008);
     };
     add_fur(m, random, budget.skirt, kilt, 0.10, 0.017, 0.9 * dark, 0.8 * light);
     on(kPelvis);
@@ -904,7 +911,7 @@ void add_fire(Assembly& scene) {
     Random random(43);
     std::vector<Index> glows;
     for (const glm::vec3& color :
-         {glm::vec3(15.0f, 5.2f, 1.0f), glm::vec3(12.0f, 2.6f, 0.35f), glm::vec3(13.0f, 7.5f, 2.4f)}) {
+         {glm::vec3(6.5f, 2.1f, 0.35f), glm::vec3(5.5f, 1.1f, 0.15f), glm::vec3(7.0f, 3.6f, 1.0f)}) {
         Material light = painted("fire");
         light.base_color = {0.0f, 0.0f, 0.0f, 1.0f};
         light.emissive = color;
@@ -923,7 +930,7 @@ void add_fire(Assembly& scene) {
         scene.animate_scale(node, 25,
                             [=](double t) { return size * glm::dvec3(1.0 + 0.18 * std::sin(9.0 * t + phase)); });
     }
-    for (int k = 0; k < 150; ++k) {
+    for (int k = 0; k < 132; ++k) {
         const double depth = k < 14 ? random.range(1.2, 4.0) : random.range(-7.0, 1.5);
         const glm::dvec3 middle{random.around(0.0, 0.20 * (11.0 - depth)),
                                 1.1 + random.around(0.0, 0.13 * (11.0 - depth)), depth};
@@ -957,11 +964,24 @@ void add_dusk(Assembly& scene) {
             const glm::dvec3 deep{0.022, 0.038, 0.068}, slate{0.085, 0.10, 0.13}, ember{0.95, 0.32, 0.07};
             glm::dvec3 c = glm::mix(deep, slate, glm::smoothstep(0.35, 0.75, cloud));
             c += glow * ember * (0.55 + 0.6 * glm::smoothstep(0.4, 0.7, cloud));
-            const double ridge = -1.3 + 3.6 * fractal_noise({9.0 * u + 3.0, 1.5}, 5);
-            return glm::mix(glm::mix(glm::dvec3(0.15, 0.066, 0.036), glm::dvec3(0.045, 0.035, 0.045),
-                                     glm::smoothstep(-3.0, 1.2, y)),
-                            c, glm::smoothstep(-0.12, 0.12, y - ridge));
+            return c;
         });
+    // Two ridges before it, the far one in the haze.
+    for (int k = 0; k < 2; ++k) {
+        const double z = -23.0 + 3.0 * k;
+        m.surface(
+            70, 2,
+            [=](double u, double v) {
+                const double x = -18.0 + 36.0 * u;
+                const double top = (k == 0 ? 0.0 : -1.4) + 3.4 * (fractal_noise({0.22 * x + 31.0 * k, 1.5}, 5) - 0.3);
+                return glm::dvec3(x, glm::mix(-7.0, top, v), z);
+            },
+            [=](double, double v, glm::dvec3) {
+                const glm::dvec3 foot = k == 0 ? glm::dvec3(0.36, 0.15, 0.075) : glm::dvec3(0.16, 0.070, 0.045);
+                const glm::dvec3 crest = k == 0 ? glm::dvec3(0.115, 0.075, 0.085) : glm::dvec3(0.050, 0.036, 0.042);
+                return glm::mix(foot, crest, v);
+            });
+    }
     scene.add_node("dusk", kNone, {}, scene.add_mesh("dusk", m.take(scene.add(sky))));
 }
 

@@ -61,13 +61,13 @@ void add_cars(Assembly& scene) {
          0.4,
          4.0},
         {{"yellow car", "yellow livery", {0.80, 0.46, 0.010}, {0.02, 0.02, 0.02}, 3, {0.02, 0.02, 0.02}},
-         -15.0,
-         0.4,
+         -15.5,
+         1.0,
          -0.3,
          2.0},
         {{"white car", "white livery", {0.78, 0.77, 0.74}, {0.55, 0.02, 0.015}, 9, {0.70, 0.45, 0.02}},
-         -23.0,
-         3.2,
+         -21.0,
+         4.3,
          0.6,
          3.0},
     };
@@ -82,7 +82,7 @@ void add_cars(Assembly& scene) {
         };
         motion.speed = speed;
         motion.steer = degrees(2.0);  // a little opposite lock
-        motion.lean_deg = -3.2;
+        motion.lean_deg = -2.2;
         motion.phase = phase;
         cars.add(e.look, motion);
         phase += 1.7;
@@ -210,7 +210,7 @@ void add_grandstand(Assembly& scene) {
     std::array<Index, 6> rows{};
     for (std::size_t k = 0; k < 6; ++k) rows[k] = scene.add_node("crowd", kNone, {}, people[k]);
     for (int section = 0; section < 4; ++section) {
-        const double s = -42.0 + section * (kStandWidth + 1.2);
+        const double s = -42.0 + section * (kStandWidth + 0.25);
         const Transform place = beside(s, kLeft, 0.0);
         scene.add_node("grandstand", kNone, place, stand_mesh);
         for (int tier = 0; tier < kTiers; ++tier)
@@ -218,7 +218,7 @@ void add_grandstand(Assembly& scene) {
                 const double shift = random.around(0.0, 0.13), turned = random.around(0.0, 0.5),
                              size = random.range(0.92, 1.12);
                 const int who = random.below(6);
-                if (random.chance(0.24)) continue;
+                if (random.chance(0.26)) continue;
                 const glm::dvec3 seat{x + shift, 1.45 + kStandRise * tier, -kStandDepth * (tier + 0.45)};
                 scene.node(rows[std::size_t(who)])
                     .instances.push_back({place.translation + place.rotation * seat,
@@ -401,7 +401,7 @@ void add_camera_and_light(Assembly& scene) {
         const double s = kSpeed * t + 11.0 + 0.5 * (t - 1.0);
         return on_track(s, -5.0 + 0.3 * (t - 1.0), 1.15);
     };
-    const auto target = [](double t) { return on_track(kSpeed * t - 2.6 - 0.15 * (t - 1.0), -0.15, 0.95); };
+    const auto target = [](double t) { return on_track(kSpeed * t - 2.6 - 0.15 * (t - 1.0), -0.15, 1.32); };
     scene.animate_translation(camera, 13, eye);
     scene.animate_rotation(camera, 13, [=](double t) { return looking(eye(t), target(t)); });
     scene.add_sun("sun", {0.75, 0.70, 0.55}, {1.0f, 0.90f, 0.74f}, 4.6);
