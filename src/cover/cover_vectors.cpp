@@ -609,7 +609,8 @@ void cover_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
     const int slots = work.samples.slots();
     const int left = work.tile.cell_x() * kCellSize, top = work.tile.cell_y() * kCellSize;
     state.strata = work.samples.strata(work.tile.cell_x(), work.tile.cell_y());
-    state.domains = work.samples.domains();
+    std::vector<Domain> domains_of_cell;
+    state.domains = work.samples.domains(work.tile.cell_x(), work.tile.cell_y(), domains_of_cell);
     state.stratum_count = static_cast<int>(state.domains.size());
     for (int s = 0; s < 64; ++s) {
         const Domain d = s < state.stratum_count ? state.domains[s] : Domain{0, 0, 0, 0, 2, -2};
@@ -618,7 +619,8 @@ void cover_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
     }
     state.tile_blocks = block_mask((work.tile.x0 - left) / kBlockSize, (work.tile.x1 - 1 - left) / kBlockSize,
                                    (work.tile.y0 - top) / kBlockSize, (work.tile.y1 - 1 - top) / kBlockSize);
-    state.samples = work.samples.cell(work.tile.cell_x(), work.tile.cell_y()).data();
+    std::vector<SampleVector> vectors_of_cell;
+    state.samples = work.samples.cell(work.tile.cell_x(), work.tile.cell_y(), vectors_of_cell).data();
     state.farthest.assign(static_cast<std::size_t>(kBlocksPerCell) * slots, INFINITY);
     state.jobs.resize(static_cast<std::size_t>(kBlocksPerCell) * slots + 8);  // list_jobs writes up to 7 beyond
     state.survivors.resize(state.jobs.size());
