@@ -91,6 +91,22 @@ void check(const CameraSettings& camera, const ImageSettings& image) {
 void check(const ShutterSettings& shutter) {
     check_from("--shutter", shutter.shutter, 0.0, 1e6);
     check_whole("--motion-segments", shutter.motion_segments, 0, 64);
+    check_from("--rolling-shutter-duration", shutter.rolling_duration, 0.0, 1e6);
+    if (shutter.rolling_duration && shutter.rolling == RollingShutter::kNone)
+        refuse("--rolling-shutter-duration: nothing rolls; give --rolling-shutter top, bottom, left or right as well");
+    if (shutter.curve.empty()) return;
+    if (shutter.curve.size() < 2) refuse("--shutter-curve: two points or more are wanted");
+    double before = 0.0, light = 0.0;
+    for (std::size_t i = 0; i < shutter.curve.size(); ++i) {
+        const auto [t, open] = shutter.curve[i];
+        if (!(t >= before && t <= 1.0))
+            refuse(fmt::format("--shutter-curve: times rise from 0 to 1, but point {} is at {}", i + 1, t));
+        if (!(open >= 0.0 && open <= 1e6))
+            refuse(fmt::format("--shutter-curve: point {} is open by {}, which is not from 0 to 1e6", i + 1, open));
+        if (i > 0) light += 0.5 * (open + shutter.curve[i - 1].open) * (t - before);
+        before = t;
+    }
+    if (!(light > 1e-9)) refuse("--shutter-curve: it lets no light in");
 }
 
 void check(const AnimationSettings& animation) {
@@ -165,6 +181,22 @@ const char* name_of(ShutterPosition position) {
     return "center";
 }
 
+const char* name_of(RollingShutter rolling) {
+    switch (rolling) {
+        case RollingShutter::kTop:
+            return "top";
+        case RollingShutter::kBottom:
+            return "bottom";
+        case RollingShutter::kLeft:
+            return "left";
+        case RollingShutter::kRight:
+            return "right";
+        case RollingShutter::kNone:
+            break;
+    }
+    return "none";
+}
+
 const char* name_of(ShadowMode mode) {
     switch (mode) {
         case ShadowMode::kOff:
@@ -196,6 +228,12 @@ void validate(const RenderSettings& settings) {
     check(settings.shutter);
     check(settings.animation);
     check(settings.method);
+    const bool shares_times = settings.method.visibility == VisibilityMethod::kAccumulation ||
+                              settings.method.visibility == VisibilityMethod::kInterleaved;
+    if (settings.shutter.rolling != RollingShutter::kNone && shares_times) {
+        refuse(fmt::format("--rolling-shutter: with --visibility {} all rows share their times; leave one of them out",
+                           name_of(settings.method.visibility)));
+    }
 }
 
 std::string settings_json(const RenderSettings& settings, const std::string& scene_name, const std::string& hash) {
@@ -226,6 +264,9 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
     json["motion_blur"] = shutter.motion_blur;
     put(json, "shutter", shutter.shutter);
     json["shutter_position"] = name_of(shutter.position);
+    for (const auto& [t, open] : shutter.curve) json["shutter_curve"].push_back({t, open});
+    json["rolling_shutter"] = name_of(shutter.rolling);
+    put(json, "rolling_shutter_duration", shutter.rolling_duration);
     json["motion_segments"] = shutter.motion_segments;
     json["fps"] = animation.fps;
     json["animation"] = animation.animation;

@@ -62,6 +62,7 @@ FrameInfo frame_info(const Frame& frame, const RenderSettings& settings, double 
     info.fps = settings.animation.fps;
     info.shutter_open = view.shutter.open;
     info.shutter_close = view.shutter.close;
+    info.readout = view.shutter.readout();
     info.lens_radius = view.lens.radius;
     info.focus_distance = view.lens.focus_distance;
     info.fstop = view.lens.fstop;

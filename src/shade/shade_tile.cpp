@@ -128,7 +128,7 @@ class LocalRun {
 class CellSamples {
   public:
     CellSamples(const SampleTable& samples, const Tile& tile) {
-        vectors_ = samples.cell(tile.cell_x(), tile.cell_y());
+        vectors_ = samples.cell(tile.cell_x(), tile.cell_y(), room_);
         slots_ = static_cast<std::size_t>(samples.slots());
     }
     LocalSample at(int pixel, int slot) const {
@@ -138,6 +138,7 @@ class CellSamples {
     }
 
   private:
+    std::vector<SampleVector> room_;
     std::span<const SampleVector> vectors_;
     std::size_t slots_;
 };
