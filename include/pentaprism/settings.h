@@ -10,6 +10,11 @@ namespace pentaprism {
 
 enum class Filter : std::uint8_t { kBox, kTent, kGaussian, kBlackmanHarris };
 enum class ToneMap : std::uint8_t { kNone, kAces, kFilmic };
+/// kGltf: Lambert under GGX, energy-conserving. kBurley: Burley's diffuse lobe (2012) and no compensation, which is
+/// what Blender's renderer had until 4.0; for comparisons with it.
+enum class BrdfModel : std::uint8_t { kGltf, kBurley };
+/// What of a texture a shading point stands for: a point; its pixel; its pixel, motion and lens.
+enum class TextureFilter : std::uint8_t { kOff, kPixel, kFull };
 enum class ShadowMode : std::uint8_t { kOff, kStill, kMoving };
 enum class ShutterPosition : std::uint8_t { kStart, kCenter, kEnd };
 
@@ -21,6 +26,8 @@ struct ImageSettings {
     double exposure = 0.0;                   ///< EV: colours are multiplied by 2^exposure
     ToneMap tonemap = ToneMap::kAces;        ///< PNG only
     std::optional<std::array<float, 3>> background;  ///< linear; unset: the scene's, else black
+    std::string environment;  ///< instead: "sky", or a .hdr or .exr picture (latitude-longitude, up is up) that lights
+                              ///< the scene, too
 };
 
 /// An unset value comes from the scene's camera (LensInfo), else from the default in the comment.
@@ -52,8 +59,10 @@ struct AnimationSettings {
 };
 
 struct MethodSettings {
-    std::string culling = "auto";              ///< a name of culling_tests()
-    std::string shading = "pixel";             ///< how often visible surfaces are shaded
+    std::string culling = "auto";   ///< a name of culling_tests()
+    std::string shading = "pixel";  ///< how often visible surfaces are shaded
+    TextureFilter texture_filter = TextureFilter::kFull;
+    BrdfModel brdf = BrdfModel::kGltf;
     ShadowMode shadows = ShadowMode::kMoving;  ///< kStill: of everything as it is at mid-shutter
     std::uint32_t seed = 0;                    ///< of the sample pattern
     int threads = 0;                           ///< 0: all processors

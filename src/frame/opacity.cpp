@@ -69,8 +69,10 @@ float texture_alpha(const Frame& frame, const Primitive& primitive, const Textur
 
 OpacityClass opacity_class(const Frame& frame, std::uint32_t triangle) {
     const Part& part = frame.parts[frame.part_of[triangle]];
-    if (part.alpha_mode == AlphaMode::kOpaque || part.material == kNone) return OpacityClass::kSolid;
-    if (!frame.textures) return OpacityClass::kMixed;
+    if (part.material == kNone) return OpacityClass::kSolid;
+    const bool glass = frame.scene->materials[part.material].transmission > 0.0f;
+    if (part.alpha_mode == AlphaMode::kOpaque) return glass ? OpacityClass::kMixed : OpacityClass::kSolid;
+    if (!frame.textures || glass) return OpacityClass::kMixed;
     const OpacityClass* classes = frame.textures->opacity_classes(part.placement.mesh, part.placement.primitive);
     return classes ? classes[triangle - part.first_triangle] : OpacityClass::kMixed;
 }
@@ -85,8 +87,22 @@ bool is_opaque_at(const Frame& frame, std::uint32_t triangle, const float baryce
     const std::array<std::uint32_t, 3> vertices = frame.vertices(triangle);
     const float alpha = material.base_color.w * vertex_alpha(primitive, vertices, barycentrics) *
                         texture_alpha(frame, primitive, material.base_color_texture, vertices, barycentrics);
-    if (part.alpha_mode == AlphaMode::kMask) return alpha >= material.alpha_cutoff;
-    return alpha > threshold(triangle, px, py, sample_index, spp);
+    if (part.alpha_mode == AlphaMode::kMask && !(alpha >= material.alpha_cutoff)) return false;
+    float opacity = part.alpha_mode == AlphaMode::kBlend ? alpha : 1.0f;
+    if (material.transmission > 0.0f) {
+        const auto look_up = [&](const Pyramid* pyramid, const TextureRef& ref) {
+            const std::vector<glm::vec2>& uv = primitive.texcoords[ref.texcoord == 1 ? 1 : 0];
+            if (!pyramid || uv.empty()) return glm::vec4(1.0f);
+            const float* b = barycentrics;
+            const glm::vec2 at = b[0] * uv[vertices[0]] + b[1] * uv[vertices[1]] + b[2] * uv[vertices[2]];
+            return pyramid->sample(ref, transform_uv(ref, at), 0.0f);
+        };
+        const Textures* textures = frame.textures.get();
+        const TextureRef& glass = material.transmission_texture;
+        opacity *=
+            1.0f - see_through(material.transmission * look_up(textures ? textures->data(glass) : nullptr, glass).x);
+    }
+    return opacity > threshold(triangle, px, py, sample_index, spp);
 }
 
 }  // namespace pentaprism
