@@ -58,6 +58,7 @@ class RowSink {
 /// the frame: render_frame throws Error(kRender) "interrupted".
 using Progress = std::function<bool(double done)>;
 
+class Environment;
 class Textures;
 
 /// Renders frames of one scene and keeps between them what does not change, such as filtered textures.
@@ -74,6 +75,8 @@ class Renderer {
   private:
     const Scene& scene_;
     std::shared_ptr<const Textures> textures_;
+    std::shared_ptr<const Environment> environment_;
+    std::string environment_name_;
 };
 
 /// Renders frame number `frame` into `sink`. Throws Error. The same input gives the same pixels, bit for bit, for any

@@ -86,6 +86,10 @@ glm::vec3 background_of(const Scene& scene, const ImageSettings& image) {
     return scene.background.value_or(glm::vec3(0.0f));
 }
 
+ShadingRate rate_of(const std::string& name) {
+    return name == "sample" ? ShadingRate::kSample : name == "pixel" ? ShadingRate::kPixel : ShadingRate::kDecoupled;
+}
+
 // Tallest band of rows whose film stays small whatever the width; a usual picture is a single band.
 int band_rows(const PixelRect& rect) {
     constexpr int kFilmPixels = 1 << 23;
@@ -197,6 +201,10 @@ void Renderer::render(const RenderSettings& settings, double number, RowSink& si
     stats.isa = isa_name(cpu_isa());
     stats.threads = thread_count();
 
+    if (settings.image.environment != environment_name_) {
+        environment_ = settings.image.environment.empty() ? nullptr : load_environment(settings.image.environment);
+        environment_name_ = settings.image.environment;
+    }
     const View view = make_view(scene_, settings, number);
     const std::vector<Index> animations = choose_animations(scene_, settings.animation.animation);
     Frame frame = pose_frame(scene_, view, animations, settings.shutter);
@@ -220,7 +228,8 @@ void Renderer::render(const RenderSettings& settings, double number, RowSink& si
     const PixelRect rendered = grown(crop, film.reach(), view.width, view.height);
     const Visibility visibility(frame, samples, settings.method, rendered);
     const auto binned = Clock::now();
-    const ShadingScene shading(frame, {settings.method.shadows});
+    const ShadingScene shading(frame, {settings.method.shadows, settings.method.brdf, settings.method.texture_filter,
+                                       rate_of(settings.method.shading), settings.image.spp, environment_});
     const auto prepared = Clock::now();
 
     FrameInfo info = frame_info(frame, settings, number, crop);
