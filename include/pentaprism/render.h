@@ -21,10 +21,11 @@ struct FrameInfo {
     int width = 0, height = 0;           ///< of the whole picture
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< the part that is rendered, half open
     double frame = 0.0, fps = 24.0;
-    double shutter_open = 0.0, shutter_close = 0.0;  ///< seconds
-    double lens_radius = 0.0;                        ///< metres, 0: pinhole
-    double focus_distance = 0.0;                     ///< metres; 0 for a pinhole
-    double fstop = 0.0;                              ///< 0 for a pinhole
+    double shutter_open = 0.0, shutter_close = 0.0;  ///< seconds; of a rolling shutter: of the first row, of the last
+    double readout = 0.0;         ///< seconds between the first row's opening and the last's; 0: no rolling shutter
+    double lens_radius = 0.0;     ///< metres, 0: pinhole
+    double focus_distance = 0.0;  ///< metres; 0 for a pinhole
+    double fstop = 0.0;           ///< 0 for a pinhole
     double focal_length_mm = 0.0;
     std::array<double, 16> world_to_camera{};  ///< column-major, at mid-shutter; camera looks along -z
     std::array<double, 16> world_to_ndc{};     ///< column-major, at mid-shutter; NDC in [-1,1], y up
@@ -64,6 +65,7 @@ class RowSink {
 /// the frame: render_frame throws Error(kRender) "interrupted".
 using Progress = std::function<bool(double done)>;
 
+class Environment;
 class Textures;
 
 /// Renders frames of one scene and keeps between them what does not change, such as filtered textures.
@@ -80,6 +82,8 @@ class Renderer {
   private:
     const Scene& scene_;
     std::shared_ptr<const Textures> textures_;
+    std::shared_ptr<const Environment> environment_;
+    std::string environment_name_;
 };
 
 /// Renders frame number `frame` into `sink`. Throws Error. The same input gives the same pixels, bit for bit, for any

@@ -26,8 +26,21 @@ enum class Aov : std::uint8_t {
     kCoverage,
     kVariance
 };
+/// kGltf: Lambert under GGX, energy-conserving. kBurley: Burley's diffuse lobe (2012) and no compensation, which is
+/// what Blender's renderer had until 4.0; for comparisons with it.
+enum class BrdfModel : std::uint8_t { kGltf, kBurley };
+/// What of a texture a shading point stands for: a point; its pixel; its pixel, motion and lens.
+enum class TextureFilter : std::uint8_t { kOff, kPixel, kFull };
 enum class ShadowMode : std::uint8_t { kOff, kStill, kMoving };
 enum class ShutterPosition : std::uint8_t { kStart, kCenter, kEnd };
+/// The edge of the picture that is exposed first; kNone: all of it at once.
+enum class RollingShutter : std::uint8_t { kNone, kTop, kBottom, kLeft, kRight };
+
+/// How much light the shutter lets in at a part of its open time; straight between points.
+struct ShutterPoint {
+    double t = 0.0;     ///< 0 opens, 1 closes
+    double open = 0.0;  ///< 0 or more, in any unit: the picture is no darker for a slow shutter
+};
 
 struct ImageSettings {
     int width = 1280, height = 720;  ///< pixels, 1 to 16384
@@ -38,6 +51,8 @@ struct ImageSettings {
     ToneMap tonemap = ToneMap::kAces;        ///< PNG only
     std::optional<std::array<float, 3>> background;  ///< linear; unset: the scene's, else black
     std::vector<Aov> aovs;                           ///< outputs beside the colour, each at most once
+    std::string environment;  ///< instead: "sky", or a .hdr or .exr picture (latitude-longitude, up is up) that lights
+                              ///< the scene, too
 };
 
 /// An unset value comes from the scene's camera (LensInfo), else from the default in the comment.
@@ -60,6 +75,9 @@ struct ShutterSettings {
     bool motion_blur = true;                              ///< false: everything stands still at mid-shutter
     std::optional<double> shutter;                        ///< open time in frames; 0.5
     ShutterPosition position = ShutterPosition::kCenter;  ///< where the frame's time lies in the open time
+    std::vector<ShutterPoint> curve;  ///< empty: open all the time. Else 2 or more, t ascending; closed outside of them
+    RollingShutter rolling = RollingShutter::kNone;
+    std::optional<double> rolling_duration;  ///< frames between the first and the last row's opening; 0.5
     int motion_segments = 0;  ///< straight pieces of each path; 0: as many as keep the error below 0.1 pixel
 };
 
@@ -81,7 +99,9 @@ struct MethodSettings {
     VisibilityMethod visibility = VisibilityMethod::kStochastic;
     /// "auto" or a combination of culling_tests(); kRaytrace and kMicropolygon have no use for one: "auto" alone.
     std::string culling = "auto";
-    std::string shading = "pixel";             ///< how often visible surfaces are shaded
+    std::string shading = "pixel";  ///< how often visible surfaces are shaded
+    TextureFilter texture_filter = TextureFilter::kFull;
+    BrdfModel brdf = BrdfModel::kGltf;
     ShadowMode shadows = ShadowMode::kMoving;  ///< kStill: of everything as it is at mid-shutter
     std::uint32_t seed = 0;                    ///< of the sample pattern
     int threads = 0;                           ///< 0: all processors
@@ -99,5 +119,11 @@ struct RenderSettings {
 /// Throws Error(kUsage) for the first setting whose value has no meaning, by the name of its option: one that is not
 /// finite, out of its range, or at odds with another. What only the scene can tell (a camera's name) is not looked at.
 void validate(const RenderSettings& settings);
+
+/// Opens evenly from t = 0 to `open`, closes evenly from `close` to 1; 0 <= open <= close <= 1.
+std::vector<ShutterPoint> trapezoid_shutter(double open, double close);
+
+/// A text file with a line "T OPEN" for each point; blank lines and what follows a # are skipped. Throws Error(kUsage).
+std::vector<ShutterPoint> read_shutter_curve(const std::string& file);
 
 }  // namespace pentaprism

@@ -90,8 +90,8 @@ Json camera_json(const FrameInfo& info) {
     json["focus_distance_m"] = info.focus_distance;
     json["shutter_open_s"] = info.shutter_open;
     json["shutter_close_s"] = info.shutter_close;
-    json["exposure_s"] = info.shutter_close - info.shutter_open;
-    json["readout_s"] = 0.0;
+    json["exposure_s"] = info.shutter_close - info.shutter_open - info.readout;  // of one row
+    json["readout_s"] = info.readout;
     Json knots = Json::array();
     for (const FrameInfo::Knot& knot : info.knots)
         knots.push_back({{"time_s", knot.time}, {"world_to_camera_column_major", knot.world_to_camera}});

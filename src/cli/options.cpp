@@ -26,10 +26,8 @@ void add_partly_built(CLI::App& command, const std::string& group, const std::st
     for (const std::string& value : planned) form += "|" + value;
     add_value(command, group, name, form, description + " (only " + built + " is built)", [=](const std::string& text) {
         if (text == built) return;
-        // trapezoid:OPEN,CLOSE is told by what is before the colon.
-        const std::string word = text.substr(0, text.find(':'));
         for (const std::string& value : planned) {
-            if (value.substr(0, value.find(':')) == word || value == "FILE") refuse_as_planned(name + " " + text);
+            if (value == text) refuse_as_planned(name + " " + text);
         }
         throw Error(ErrorKind::kUsage, fmt::format("{}: '{}' is not one of {}", name, text, form));
     });
@@ -69,10 +67,13 @@ void add_image_options(CLI::App& command, ImageSettings& image) {
                       "--tonemap", text,
                       {{"none", ToneMap::kNone}, {"aces", ToneMap::kAces}, {"filmic", ToneMap::kFilmic}});
               });
-    add_value(command, group, "--background", "R,G,B",
-              "Linear colour behind the scene (default: the scene's, else 0,0,0)", [&](const std::string& text) {
-                  if (ends_with(text, ".hdr") || ends_with(text, ".exr")) {
-                      refuse_as_planned("--background with an environment picture");
+    add_value(command, group, "--background", "R,G,B|FILE|sky",
+              "Linear colour behind the scene (default: the scene's, else 0,0,0), or what surrounds and lights it: a "
+              "latitude-longitude picture, .hdr or .exr, or the built-in sky",
+              [&](const std::string& text) {
+                  if (text == "sky" || ends_with(text, ".hdr") || ends_with(text, ".exr")) {
+                      image.environment = text;
+                      return;
                   }
                   const auto values = parse_numbers("--background", text, 3, "R,G,B");
                   image.background = {static_cast<float>(values[0]), static_cast<float>(values[1]),
@@ -128,6 +129,14 @@ void add_lens_options(CLI::App& command, CameraSettings& camera) {
         ->group(group);
 }
 
+std::vector<ShutterPoint> parse_shutter_curve(const std::string& text) {
+    if (text == "box") return {};
+    const std::string trapezoid = "trapezoid:";
+    if (text.substr(0, trapezoid.size()) != trapezoid) return read_shutter_curve(text);
+    const auto times = parse_numbers("--shutter-curve", text.substr(trapezoid.size()), 2, "trapezoid:OPEN,CLOSE");
+    return trapezoid_shutter(times[0], times[1]);
+}
+
 void add_shutter_options(CLI::App& command, ShutterSettings& shutter) {
     const std::string group = "Shutter";
     add_number(command, group, "--shutter", "F", "Open time in frames (default: the camera's, else 0.5)",
@@ -139,11 +148,22 @@ void add_shutter_options(CLI::App& command, ShutterSettings& shutter) {
                                                                     {"center", ShutterPosition::kCenter},
                                                                     {"end", ShutterPosition::kEnd}});
               });
-    add_partly_built(command, group, "--shutter-curve", "How the shutter opens and closes", "box",
-                     {"trapezoid:OPEN,CLOSE", "FILE"});
-    add_partly_built(command, group, "--rolling-shutter", "The edge that is read out first", "none",
-                     {"top", "bottom", "left", "right"});
-    add_planned_value(command, group, "--rolling-shutter-duration", "F", "Time of the read-out in frames");
+    add_value(command, group, "--shutter-curve", "box|trapezoid:OPEN,CLOSE|FILE",
+              "How it opens and closes: at once, evenly until OPEN and from CLOSE of its time, or a file with lines T "
+              "OPEN (default box)",
+              [&](const std::string& text) { shutter.curve = parse_shutter_curve(text); });
+    add_value(command, group, "--rolling-shutter", "none|top|bottom|left|right",
+              "The edge of the picture that is exposed first (default none: all at once)",
+              [&](const std::string& text) {
+                  shutter.rolling = parse_choice<RollingShutter>("--rolling-shutter", text,
+                                                                 {{"none", RollingShutter::kNone},
+                                                                  {"top", RollingShutter::kTop},
+                                                                  {"bottom", RollingShutter::kBottom},
+                                                                  {"left", RollingShutter::kLeft},
+                                                                  {"right", RollingShutter::kRight}});
+              });
+    add_number(command, group, "--rolling-shutter-duration", "F",
+               "Frames from the first row's opening to the last's (default 0.5)", shutter.rolling_duration);
     add_value(command, group, "--motion-segments", "auto|N",
               "Straight pieces of each path, 1 to 64 (default auto: error below 0.1 pixel)",
               [&](const std::string& text) {
@@ -186,8 +206,23 @@ void add_method_options(CLI::App& command, MethodSettings& method) {
                                                       {"micropolygon", VisibilityMethod::kMicropolygon}});
               });
     add_partly_built(command, group, "--backend", "What computes", "cpu", {"gl"});
-    add_partly_built(command, group, "--shading", "How often visible surfaces are shaded", "pixel",
-                     {"sample", "decoupled"});
+    add_value(command, group, "--shading", "pixel|sample|decoupled",
+              "How often visible surfaces are shaded (default pixel)", [&](const std::string& text) {
+                  method.shading = parse_choice<std::string>(
+                      "--shading", text, {{"pixel", "pixel"}, {"sample", "sample"}, {"decoupled", "decoupled"}});
+              });
+    add_value(command, group, "--texture-filter", "off|pixel|full",
+              "What a texture is averaged over: nothing, the pixel, or pixel, motion and lens (default full)",
+              [&](const std::string& text) {
+                  method.texture_filter = parse_choice<TextureFilter>(
+                      "--texture-filter", text,
+                      {{"off", TextureFilter::kOff}, {"pixel", TextureFilter::kPixel}, {"full", TextureFilter::kFull}});
+              });
+    add_value(command, group, "--brdf", "gltf|burley", "Model of surfaces (default gltf; burley as older Blender)",
+              [&](const std::string& text) {
+                  method.brdf = parse_choice<BrdfModel>("--brdf", text,
+                                                        {{"gltf", BrdfModel::kGltf}, {"burley", BrdfModel::kBurley}});
+              });
     add_value(command, group, "--shadows", "off|still|moving",
               "Shadows: none, of mid-shutter, or at each time of the shutter (default moving)",
               [&](const std::string& text) {

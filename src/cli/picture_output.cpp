@@ -67,7 +67,10 @@ void render_sharp(Renderer& renderer, const FrameSource& source, const FrameInfo
     RenderSettings settings = source.settings;
     settings.image.aovs.clear();
     settings.camera.defocus = false;
-    settings.shutter.shutter = 0.0;  // open for no time, at the moment that is asked for
+    settings.shutter.shutter = 0.0;  // open for no time, at the moment that is asked for, everywhere
+    settings.shutter.rolling = RollingShutter::kNone;
+    settings.shutter.rolling_duration.reset();
+    settings.shutter.curve.clear();
     const double time = moment == SharpMoment::kOpen    ? info.shutter_open
                         : moment == SharpMoment::kClose ? info.shutter_close
                                                         : 0.5 * (info.shutter_open + info.shutter_close);

@@ -34,10 +34,11 @@ class MicropolygonTile {
           kernels_(micropolygon_kernels()),
           centre_(cell_centre(work.frame.view, work.tile.cell_x(), work.tile.cell_y())),
           dicer_(centre_, work.frame.view.lens.ratio),
-          samples_(work.samples.cell(work.tile.cell_x(), work.tile.cell_y()).data()),
+          samples_(work.samples.cell(work.tile.cell_x(), work.tile.cell_y(), sample_room_).data()),
+          domains_(work.samples.domains(work.tile.cell_x(), work.tile.cell_y(), domain_room_)),
           slots_(work.samples.slots()),
-          by_stratum_(work.samples.domains().size()),
-          boxes_(work.samples.domains().size()) {
+          by_stratum_(domains_.size()),
+          boxes_(domains_.size()) {
         for (const SampleTable::Stratum& s : work.samples.strata(work.tile.cell_x(), work.tile.cell_y()))
             by_stratum_[s.stratum].push_back({s.slot, s.blocks});
         const Tile& tile = work.tile;
@@ -57,7 +58,7 @@ class MicropolygonTile {
 
   private:
     void cover(const LocalTriangle& triangle, const Micropolygon& micro) {
-        kernels_.strata_boxes(micro, work_.samples.domains(), boxes_.data());
+        kernels_.strata_boxes(micro, domains_, boxes_.data());
         jobs_.clear();
         for (std::size_t stratum = 0; stratum < boxes_.size(); ++stratum) list_jobs(stratum);
         counts_.tested += kernels_.find_lanes(micro.piece, samples_, boxes_.data(), jobs_);
@@ -118,7 +119,10 @@ class MicropolygonTile {
     MicropolygonKernels kernels_;
     CellCentre centre_;
     Dicer dicer_;
-    const SampleVector* samples_;  // of the cell
+    std::vector<SampleVector> sample_room_;
+    std::vector<Domain> domain_room_;
+    const SampleVector* samples_;      // of the cell
+    std::span<const Domain> domains_;  // of its strata
     int slots_;
     std::vector<std::vector<SlotBlocks>> by_stratum_;
     std::vector<LocalBox> boxes_;  // of each stratum

@@ -145,7 +145,9 @@ void cover_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
     const int left = work.tile.cell_x() * kCellSize, top = work.tile.cell_y() * kCellSize;
     state.slots = slots;
     state.strata = work.samples.strata(work.tile.cell_x(), work.tile.cell_y());
-    const std::span<const Domain> domains = work.samples.domains();
+    std::vector<Domain> domains_of_cell;
+    const std::span<const Domain> domains =
+        work.samples.domains(work.tile.cell_x(), work.tile.cell_y(), domains_of_cell);
     state.stratum_count = static_cast<int>(domains.size());
     for (int s = 0; s < kMaxStrata; ++s) {
         const Domain d = s < state.stratum_count ? domains[s] : Domain{0, 0, 0, 0, 2, -2};
@@ -154,7 +156,8 @@ void cover_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
     }
     state.tile_blocks = column_mask((work.tile.x0 - left) / kBlockSize, (work.tile.x1 - 1 - left) / kBlockSize) &
                         row_mask((work.tile.y0 - top) / kBlockSize, (work.tile.y1 - 1 - top) / kBlockSize);
-    state.samples = work.samples.cell(work.tile.cell_x(), work.tile.cell_y()).data();
+    std::vector<SampleVector> vectors_of_cell;
+    state.samples = work.samples.cell(work.tile.cell_x(), work.tile.cell_y(), vectors_of_cell).data();
     const std::size_t vectors = static_cast<std::size_t>(kBlocksPerCell) * slots;
     state.farthest.resize(vectors);
     for (std::size_t job = 0; job < vectors; ++job)  // nothing is hidden in the tile, everything beyond it

@@ -54,7 +54,7 @@ class Walk {
           left_(work.tile.cell_x() * kCellSize),
           top_(work.tile.cell_y() * kCellSize),
           slots_(work.samples.slots()),
-          vectors_(work.samples.cell(work.tile.cell_x(), work.tile.cell_y())) {
+          vectors_(work.samples.cell(work.tile.cell_x(), work.tile.cell_y(), room_)) {
         const View& view = work.frame.view;
         const float ratio = static_cast<float>(view.lens.ratio);
         whole_ = {-1.0f, 1.0f, -ratio, ratio, 0.0f, 1.0f};
@@ -177,7 +177,8 @@ class Walk {
     Hits& hits_;
     CoverCounts& counts_;
     CellCentre centre_;
-    int left_, top_, slots_;  // of the cell in the picture
+    int left_, top_, slots_;          // of the cell in the picture
+    std::vector<SampleVector> room_;  // before vectors_, which may point into it
     std::span<const SampleVector> vectors_;
     Domain whole_;
     Footprint picture_;

@@ -73,8 +73,8 @@ Imf::Header make_header(const FrameInfo& info, const FileMetadata& metadata) {
     header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
 
     Imf::addChromaticities(header, Imf::Chromaticities());  // the default is Rec. 709 with white at D65
-    const double exposure =
-        metadata.exposure_seconds > 0.0 ? metadata.exposure_seconds : info.shutter_close - info.shutter_open;
+    const double exposure = metadata.exposure_seconds > 0.0 ? metadata.exposure_seconds
+                                                            : info.shutter_close - info.shutter_open - info.readout;
     Imf::addExpTime(header, static_cast<float>(exposure));
     if (info.lens_radius > 0.0) {  // a pinhole has neither
         Imf::addFocus(header, static_cast<float>(info.focus_distance));

@@ -63,6 +63,7 @@ FrameInfo frame_info(const Frame& frame, std::span<const Index> animations, cons
     info.fps = settings.animation.fps;
     info.shutter_open = view.shutter.open;
     info.shutter_close = view.shutter.close;
+    info.readout = view.shutter.readout();
     info.lens_radius = view.lens.radius;
     info.focus_distance = view.lens.focus_distance;
     info.fstop = view.lens.fstop;
@@ -93,6 +94,10 @@ FrameInfo frame_info(const Frame& frame, std::span<const Index> animations, cons
 glm::vec3 background_of(const Scene& scene, const ImageSettings& image) {
     if (image.background) return {(*image.background)[0], (*image.background)[1], (*image.background)[2]};
     return scene.background.value_or(glm::vec3(0.0f));
+}
+
+ShadingRate rate_of(const std::string& name) {
+    return name == "sample" ? ShadingRate::kSample : name == "pixel" ? ShadingRate::kPixel : ShadingRate::kDecoupled;
 }
 
 // Tallest band of rows whose film stays small whatever the width; a usual picture is a single band.
@@ -206,6 +211,10 @@ void Renderer::render(const RenderSettings& settings, double number, RowSink& si
     stats.isa = isa_name(cpu_isa());
     stats.threads = thread_count();
 
+    if (settings.image.environment != environment_name_) {
+        environment_ = settings.image.environment.empty() ? nullptr : load_environment(settings.image.environment);
+        environment_name_ = settings.image.environment;
+    }
     const View view = make_view(scene_, settings, number);
     const std::vector<Index> animations = choose_animations(scene_, settings.animation.animation);
     Frame frame = pose_frame(scene_, view, animations, settings.shutter);
@@ -229,7 +238,8 @@ void Renderer::render(const RenderSettings& settings, double number, RowSink& si
     const PixelRect rendered = grown(crop, film.reach(), view.width, view.height);
     const Visibility visibility(frame, samples, settings.method, rendered);
     const auto binned = Clock::now();
-    const ShadingScene shading(frame, {settings.method.shadows});
+    const ShadingScene shading(frame, {settings.method.shadows, settings.method.brdf, settings.method.texture_filter,
+                                       rate_of(settings.method.shading), settings.image.spp, environment_});
     const auto prepared = Clock::now();
 
     FrameInfo info = frame_info(frame, animations, settings, number, crop);

@@ -26,7 +26,8 @@ Grouping grouping_for(const Frame& frame) {
 }
 
 SampleTable make_samples(const Frame& frame, int spp, const MethodSettings& method) {
-    return SampleTable(spp, method.seed, frame.view.lens, grouping_for(frame), pattern_for(method.visibility));
+    return SampleTable(spp, method.seed, frame.view.lens, grouping_for(frame), pattern_for(method.visibility),
+                       SampleTimes(frame.view.shutter, frame.view.width, frame.view.height));
 }
 
 Visibility::Visibility(const Frame& frame, const SampleTable& samples, const MethodSettings& method,

@@ -15,10 +15,11 @@ void AovFilm::add(const Tile& tile, const SampleTable& samples, const Hits& hits
     if (worker.resolvers.empty())
         for (const Aov aov : aovs_) worker.resolvers.push_back(make_resolver(aov, sources_));
     worker.surfaces.start(*sources_.scene, tile);
+    std::vector<SampleVector> room;
     for (int by = tile.y0 / kBlockSize; by * kBlockSize < tile.y1; ++by)
         for (int bx = tile.x0 / kBlockSize; bx * kBlockSize < tile.x1; ++bx) {
             worker.order.read(samples, bx, by);
-            const std::span<const SampleVector> vectors = samples.block(bx, by);
+            const std::span<const SampleVector> vectors = samples.block(bx, by, room);
             for (int lane = 0; lane < kLanes; ++lane) {
                 const int px = bx * kBlockSize + lane % kBlockSize, py = by * kBlockSize + lane / kBlockSize;
                 if (px < std::max(tile.x0, x0_) || px >= std::min(tile.x1, x0_ + width_)) continue;

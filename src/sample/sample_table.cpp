@@ -73,7 +73,7 @@ class BlockPattern {
 };
 
 // `strata`: intervals of the shutter, one of which is raw.stratum_t.
-SamplePoint to_sample(const RawSample& raw, int strata, const Lens& lens) {
+SamplePoint to_sample(const RawSample& raw, int strata, const Lens& lens, const SampleTimes& times) {
     constexpr double kUnit = 1.0 / 4294967296.0;
     SamplePoint sample;
     sample.x = static_cast<float>(raw.x >> 24) / 256.0f;
@@ -84,7 +84,7 @@ SamplePoint to_sample(const RawSample& raw, int strata, const Lens& lens) {
     sample.v = std::clamp(static_cast<float>(uv.y), -limit, limit);
     const std::uint64_t t =
         ((static_cast<std::uint64_t>(raw.stratum_t) << 24) | raw.jitter_t) / static_cast<unsigned>(strata);
-    sample.t = static_cast<float>(t) / 16777216.0f;
+    sample.t = times.within_exposure(static_cast<std::uint32_t>(t));
     return sample;
 }
 
@@ -159,12 +159,14 @@ void extend(Domain& domain, const Domain& other) {
 
 }  // namespace
 
-SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping wanted, SamplePattern pattern)
+SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping wanted, SamplePattern pattern,
+                         SampleTimes times)
     : spp_(spp),
       period_(period_for(spp)),
       seed_(seed),
       grouping_(pattern == SamplePattern::kFree ? wanted : Grouping::kStill),
-      pattern_(pattern) {
+      pattern_(pattern),
+      times_(std::move(times)) {
     const Grouping grouping = grouping_;
     std::optional<SharedTriples> shared;
     if (pattern != SamplePattern::kFree) shared.emplace(pattern, spp, seed);
@@ -195,7 +197,7 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
                         shared->triple_of(cell % cells * kCellSize + column, cell / cells * kCellSize + row, index));
                     raw = {raw.x, raw.y, triple.u, triple.v, triple.stratum_t, triple.jitter_t};
                 }
-                const SamplePoint sample = to_sample(raw, shared ? shared->count() : spp, lens);
+                const SamplePoint sample = to_sample(raw, shared ? shared->count() : spp, lens, times_);
                 const int slot = by_lens                         ? order[index]
                                  : grouping == Grouping::kMotion ? static_cast<int>(raw.stratum_t)
                                                                  : index;
@@ -290,9 +292,39 @@ std::span<const SampleVector> SampleTable::block(int bx, int by) const {
     return std::span(vectors_).subspan(block_index(bx, by) * spp_, spp_);
 }
 
-std::span<const SampleVector> SampleTable::cell(int cx, int cy) const {
+std::span<const SampleVector> SampleTable::block(int bx, int by, std::vector<SampleVector>& room) const {
+    const std::span<const SampleVector> stored = block(bx, by);
+    if (!times_.roll()) return stored;
+    room.assign(stored.begin(), stored.end());
+    roll(room, bx / kCellBlocks, by / kCellBlocks);
+    return room;
+}
+
+std::span<const SampleVector> SampleTable::cell(int cx, int cy, std::vector<SampleVector>& room) const {
     const std::size_t vectors = static_cast<std::size_t>(kBlocksPerCell) * spp_;
-    return std::span(vectors_).subspan(cell_index(cx, cy) * vectors, vectors);
+    const auto stored = std::span(vectors_).subspan(cell_index(cx, cy) * vectors, vectors);
+    if (!times_.roll()) return stored;
+    room.assign(stored.begin(), stored.end());
+    roll(room, cx, cy);
+    return room;
+}
+
+// Offsets from the middle of the cell are multiples of 1/256, so the places are exact.
+void SampleTable::roll(std::span<SampleVector> vectors, int cx, int cy) const {
+    const double x = kCellSize * (cx + 0.5), y = kCellSize * (cy + 0.5);
+    for (SampleVector& v : vectors)
+        for (int lane = 0; lane < kLanes; ++lane) v.t[lane] = times_.at(v.t[lane], x + v.x[lane], y - v.y[lane]);
+}
+
+std::span<const Domain> SampleTable::domains(int cx, int cy, std::vector<Domain>& room) const {
+    if (!times_.roll()) return domains_;
+    room.assign(domains_.begin(), domains_.end());
+    const double x = kCellSize * static_cast<double>(cx), y = kCellSize * static_cast<double>(cy);
+    for (Domain& d : room) {
+        const auto [t0, t1] = times_.range(d.t0, d.t1, x, x + kCellSize, y, y + kCellSize);
+        d.t0 = t0, d.t1 = t1;
+    }
+    return room;
 }
 
 std::span<const std::uint16_t> SampleTable::indices(int bx, int by) const {
@@ -313,7 +345,9 @@ SamplePoint SampleTable::sample(int px, int py, int index) const {
     const SampleVector& vector = block(px / kBlockSize, py / kBlockSize)[slot_of(px, py, index)];
     const int block = py % kCellSize / kBlockSize * kCellBlocks + px % kCellSize / kBlockSize;
     const LocalOffset place = local_offset(block, lane);
-    return {vector.x[lane] - place.x, place.y - vector.y[lane], vector.u[lane], vector.v[lane], vector.t[lane]};
+    const float x = vector.x[lane] - place.x, y = place.y - vector.y[lane];
+    return {x, y, vector.u[lane], vector.v[lane],
+            times_.at(vector.t[lane], px + static_cast<double>(x), py + static_cast<double>(y))};
 }
 
 }  // namespace pentaprism

@@ -217,7 +217,8 @@ class EmbreeTracer::Impl {
         context.bx = bx;
         context.by = by;
 
-        const std::span<const SampleVector> vectors = table_.block(bx, by);
+        static thread_local std::vector<SampleVector> room;
+        const std::span<const SampleVector> vectors = table_.block(bx, by, room);
         const std::span<const std::uint16_t> indices = table_.indices(bx, by);
         const std::size_t block = kCellBlocks * static_cast<std::size_t>(by % kCellBlocks) + bx % kCellBlocks;
         for (std::size_t slot = 0; slot < vectors.size(); ++slot) {

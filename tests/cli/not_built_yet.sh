@@ -9,9 +9,6 @@ while read -r option value; do
 done <<'END'
 --focus-range 1,2
 --max-foreground-blur 5
---shutter-curve trapezoid:0.1,0.9
---rolling-shutter top
---rolling-shutter-duration 0.5
 --backend gl
 --shading sample
 --shading decoupled

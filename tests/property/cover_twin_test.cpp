@@ -215,6 +215,25 @@ TEST_P(CoverTwins, AgreeForMaskedAndBlendedSurfaces) {
     }
 }
 
+TEST_P(CoverTwins, AgreeUnderARollingShutter) {
+    Random r(32);
+    for (const RollingShutter edge :
+         {RollingShutter::kTop, RollingShutter::kBottom, RollingShutter::kLeft, RollingShutter::kRight}) {
+        Soup s = soup();
+        s.width = r.between(30, 100);
+        s.height = r.between(30, 70);
+        s.triangles = 3;
+        Shutter shutter;
+        shutter.close = 1.0;
+        shutter.rolling = edge;
+        shutter.exposure_share = 0.3 * r.below(3);
+        if (r.below(2) == 0) shutter.curve = ShutterCurve(trapezoid_shutter(0.2, 0.4));
+        const SampleTable rolled(8, 7, Lens{}, GetParam().grouping, SamplePattern::kFree,
+                                 SampleTimes(shutter, s.width, s.height));
+        EXPECT_GT(expect_twins(make_soup(r, s), rolled, 8 << r.below(3), whole(s)), 0u);
+    }
+}
+
 TEST_P(CoverTwins, AgreeInsideACrop) {
     Random r(28);
     for (int i = 0; i < 4 * effort(); ++i) {

@@ -90,6 +90,63 @@ TEST(AnalyticBlur, AHalfPlaneThatSweepsOverPixelsIsARamp) {
     }
 }
 
+TEST(AnalyticBlur, AShutterThatOpensAndClosesEvenlyMakesTheRampASmoothStep) {
+    // Light until t of a triangle that peaks in the middle: 2 t^2, then 1 - 2 (1 - t)^2. The edge is at 0.05 m + 0.5 m
+    // * t.
+    const Scene scene = moving_square(20.0f, {-20.2f, 0, -1}, {-19.2f, 0, -1});
+    RenderSettings settings = settings_with(64);
+    settings.shutter.shutter = 0.5;
+    settings.shutter.curve = trapezoid_shutter(0.5, 0.5);
+    const Picture picture = picture_of(scene, settings);
+    for (int px = kSize / 2; px < kSize; ++px) {
+        double mean = 0, expected = 0;
+        for (int py = 0; py < kSize; ++py) mean += alpha(picture, px, py) / kSize;
+        // A point is covered from when the edge has passed it until the shutter closes.
+        constexpr int kSteps = 1000;
+        for (int i = 0; i < kSteps; ++i) {
+            const double x = (px + (i + 0.5) / kSteps - kSize / 2) / kFocal;
+            const double t = std::clamp((x - 0.05) / 0.5, 0.0, 1.0);
+            expected += (t < 0.5 ? 1 - 2 * t * t : 2 * (1 - t) * (1 - t)) / kSteps;
+        }
+        const double sigma = std::sqrt(std::max(1e-9, expected * (1 - expected)) / (64.0 * kSize));
+        EXPECT_NEAR(mean, expected, 5 * sigma + 1e-5) << "column " << px;
+    }
+}
+
+TEST(AnalyticBlur, ARollingShutterSlantsAMovingEdgeTowardsTheRowsThatComeLast) {
+    // The edge crosses half a metre, 16 pixels, while the rows are read out, and is exposed a tenth as long as that.
+    const Scene scene = moving_square(20.0f, {-20.25f, 0, -1}, {-19.25f, 0, -1});
+    for (const RollingShutter edge : {RollingShutter::kTop, RollingShutter::kBottom}) {
+        RenderSettings settings = settings_with(256);
+        settings.shutter.shutter = 0.05;
+        settings.shutter.rolling = edge;
+        settings.shutter.rolling_duration = 0.5;
+        const Picture picture = picture_of(scene, settings);
+        for (int py = 0; py < kSize; ++py) {
+            double covered = 0, expected = 0;
+            for (int px = 0; px < kSize; ++px) covered += alpha(picture, px, py);
+            // All is centred about 0.5 s, when the edge is at 0.25 m; a row is 1/64 of the readout.
+            const double delay = (py + 0.5) / kSize - 0.5;
+            expected = kSize / 2 + kFocal * (0.25 + 0.5 * (edge == RollingShutter::kTop ? delay : -delay));
+            // The place of the edge varies evenly by 1.6 pixels over the exposure and a quarter over the row's height,
+            // and each sample by a pixel of its own: about two pixels share 256 samples each.
+            const double sigma = std::sqrt(2.0 * 0.25 / 256.0);
+            EXPECT_NEAR(covered, expected, 5 * sigma) << "row " << py;
+        }
+    }
+}
+
+TEST(AnalyticBlur, ARollingShutterOfNoDurationIsNone) {
+    const Scene scene = moving_square(20.0f, {-20.2f, 0, -1}, {-19.2f, 0, -1});
+    RenderSettings settings = settings_with(16);
+    const Picture plain = picture_of(scene, settings);
+    settings.shutter.rolling = RollingShutter::kTop;
+    settings.shutter.rolling_duration = 0.0;
+    EXPECT_EQ(picture_of(scene, settings).rgba, plain.rgba);
+    settings.shutter.rolling_duration = 0.5;
+    EXPECT_NE(picture_of(scene, settings).rgba, plain.rgba);
+}
+
 // A square of `side` pixels at depth 2 in front of a lens focused elsewhere.
 constexpr double kSide = 3.0, kDepth = 2.0;
 Scene small_square(double speed_px = 0) {
