@@ -50,21 +50,23 @@ std::vector<std::string> bench_default_scenes();
 /// One method on one frame. Times are wall times in milliseconds with all threads of the plan.
 struct BenchRow {
     std::string scene, effect, method, backend = "cpu";
-    bool conservative = true;  ///< the method promises to lose no sample
-    std::int64_t samples = 0;  ///< of the tiles that were measured (BenchCell::share)
-    std::int64_t tested = 0;   ///< exact 5D tests
-    std::int64_t covered = 0;  ///< of them accepted
+    bool conservative = true;     ///< the method promises to lose no sample
+    bool own_arithmetic = false;  ///< decides by other arithmetic than the exact test: differs at edges and depth ties
+    std::int64_t samples = 0;     ///< of the tiles that were measured (BenchCell::share)
+    std::int64_t tested = 0;      ///< exact 5D tests
+    std::int64_t covered = 0;     ///< of them accepted
     std::int64_t footprints =
         0;  ///< questions for all samples of a footprint: CullTest::prepare, which sets up the next
     std::int64_t kept_footprints = 0;  ///< of them answered by "may be hit"
     std::int64_t asked = 0;            ///< questions for single samples
-    std::int64_t false_culls = 0;      ///< samples whose triangle or depth differs, in any bit, from those of `none`
-    double setup_ms = 0.0;  ///< bounds, bins and all questions of the culling test, the exact tests left out; of
-                            ///< `auto`, whose questions depend on depths, bounds and bins alone
-    double test_ms = 0.0;   ///< the rest: exact tests, depth, opacity
-    double frame_ms = 0.0;  ///< visibility of the whole frame, from posed triangles to the hit of every sample
-    int runs = 0;           ///< timed runs behind the medians
-    double peak_mb = 0.0;   ///< largest resident memory while it ran, what the laboratory itself keeps not counted
+    std::int64_t false_culls = 0;  ///< samples whose triangle or depth differs, in any bit, from those of `none` on the
+                                   ///< same samples
+    double setup_ms = 0.0;         ///< bounds, bins and all questions of the culling test, the exact tests left out; of
+                                   ///< `auto`, whose questions depend on depths, bounds and bins alone
+    double test_ms = 0.0;          ///< the rest: exact tests, depth, opacity
+    double frame_ms = 0.0;         ///< visibility of the whole frame, from posed triangles to the hit of every sample
+    int runs = 0;                  ///< timed runs behind the medians
+    double peak_mb = 0.0;  ///< largest resident memory while it ran, what the laboratory itself keeps not counted
 
     double ste() const { return tested > 0 ? static_cast<double>(covered) / static_cast<double>(tested) : 0.0; }
     double tests_per_covered() const {
