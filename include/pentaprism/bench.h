@@ -18,22 +18,27 @@ struct BenchEffect {
     double motion = 0.0, defocus = 0.0;
 };
 
-/// still, motion, motion-x2, defocus, defocus-x2, both, both-x2.
+/// still, motion, motion-x2, defocus, defocus-x2, both, both-x2. Where a name is asked for, other factors up to 64 will
+/// do, too: both-x0.5, motion-x8.
 std::vector<BenchEffect> bench_effects();
 
-/// What is measured unless said otherwise: "auto", each of culling_tests() by itself, and the other ways to find what
-/// is visible: accumulation, interleaved, micropolygon and, if this build has it, raytrace.
+/// What can be measured: "auto", each of culling_tests() by itself, and the other ways to find what is visible:
+/// accumulation, interleaved, micropolygon and, if this build has it, raytrace.
 std::vector<std::string> bench_methods();
+
+/// What is measured unless said otherwise: all of them but micropolygon, which takes far longer than all others.
+std::vector<std::string> bench_default_methods();
 
 /// What to measure. A scene without a lens of its own gets f/2.8, one without a shutter half a frame.
 struct BenchPlan {
     std::vector<std::string> scenes;   ///< as load_scene() takes them; empty: bench_default_scenes()
-    std::vector<std::string> effects;  ///< names of bench_effects(); empty: all
-    std::vector<std::string> methods;  ///< of bench_methods(), and combinations of culling tests; empty: all
-    RenderSettings settings;           ///< image, method.seed, method.threads, animation; lens and shutter: see effects
-    double frame = -1.0;               ///< below 0: 24 of a built-in scene, 0 of a file
-    int runs = 5;                      ///< timed runs of each method, methods in turn; the median counts
-    double seconds = 4.0;  ///< a slower method gets fewer runs: as many as fit in these seconds, at least one
+    std::vector<std::string> effects;  ///< names of bench_effects(), or other factors; empty: all seven
+    std::vector<std::string>
+        methods;              ///< of bench_methods(), and combinations of culling tests; empty: the default ones
+    RenderSettings settings;  ///< image, method.seed, method.threads, animation; lens and shutter: see effects
+    double frame = -1.0;      ///< below 0: 24 of a built-in scene, 0 of a file
+    int runs = 5;             ///< timed runs of each method, methods in turn; the median counts
+    double seconds = 4.0;     ///< a slower method gets fewer runs: as many as fit in these seconds, at least one
     std::int64_t most_tests = 32'000'000;  ///< where the bounding box alone would need more exact tests, a part of the
                                            ///< picture's tiles is measured, the same with all methods; 0: no limit
     std::vector<int> peer_threads;  ///< Embree is timed with each of these numbers of threads (0: all); empty: not
@@ -60,7 +65,7 @@ struct BenchRow {
     std::int64_t kept_footprints = 0;  ///< of them answered by "may be hit"
     std::int64_t asked = 0;            ///< questions for single samples
     std::int64_t false_culls = 0;  ///< samples whose triangle or depth differs, in any bit, from those of `none` on the
-                                   ///< same samples
+                                   ///< same samples; with `own_arithmetic` whose triangle does
     double setup_ms = 0.0;         ///< bounds, bins and all questions of the culling test, the exact tests left out; of
                                    ///< `auto`, whose questions depend on depths, bounds and bins alone
     double test_ms = 0.0;          ///< the rest: exact tests, depth, opacity
