@@ -21,23 +21,25 @@ struct BenchEffect {
 /// still, motion, motion-x2, defocus, defocus-x2, both, both-x2.
 std::vector<BenchEffect> bench_effects();
 
-/// What can be measured, in this order: "auto" and each culling test, as culling_tests() names them.
+/// What is measured unless said otherwise: "auto", each of culling_tests() by itself, and the other ways to find what
+/// is visible: accumulation, interleaved, micropolygon and, if this build has it, raytrace.
 std::vector<std::string> bench_methods();
 
 /// What to measure. A scene without a lens of its own gets f/2.8, one without a shutter half a frame.
 struct BenchPlan {
     std::vector<std::string> scenes;   ///< as load_scene() takes them; empty: bench_default_scenes()
     std::vector<std::string> effects;  ///< names of bench_effects(); empty: all
-    std::vector<std::string> methods;  ///< names of bench_methods(); empty: all
+    std::vector<std::string> methods;  ///< of bench_methods(), and combinations of culling tests; empty: all
     RenderSettings settings;           ///< image, method.seed, method.threads, animation; lens and shutter: see effects
     double frame = -1.0;               ///< below 0: 24 of a built-in scene, 0 of a file
     int runs = 5;                      ///< timed runs of each method, methods in turn; the median counts
     double seconds = 4.0;  ///< a slower method gets fewer runs: as many as fit in these seconds, at least one
-    std::int64_t most_tests = 64'000'000;  ///< where the bounding box alone would need more exact tests, a part of the
+    std::int64_t most_tests = 32'000'000;  ///< where the bounding box alone would need more exact tests, a part of the
                                            ///< picture's tiles is measured, the same with all methods; 0: no limit
-    std::vector<int> peer_threads;     ///< Embree is timed with each of these numbers of threads (0: all); empty: not
-    bool images = true;                ///< pictures and heat maps, for bench_html()
-    int map_width = 400, map_spp = 4;  ///< heat maps are made of smaller pictures, whole
+    std::vector<int> peer_threads;  ///< Embree is timed with each of these numbers of threads (0: all); empty: not
+    bool images = true;             ///< pictures and heat maps, for bench_html()
+    int picture_width = 512, picture_spp = 32;  ///< of the frames that are shown
+    int map_width = 400, map_spp = 4;           ///< heat maps are made of smaller pictures, whole
 };
 BenchPlan full_bench_plan();   ///< 1024x768, 16 samples per pixel
 BenchPlan quick_bench_plan();  ///< small pictures of two scenes

@@ -26,6 +26,7 @@ enum class Aov : std::uint8_t {
     kCoverage,
     kVariance
 };
+enum class ShadowMode : std::uint8_t { kOff, kStill, kMoving };
 enum class ShutterPosition : std::uint8_t { kStart, kCenter, kEnd };
 /// The edge of the picture that is exposed first; kNone: all of it at once.
 enum class RollingShutter : std::uint8_t { kNone, kTop, kBottom, kLeft, kRight };
@@ -60,6 +61,7 @@ struct CameraSettings {
     std::optional<std::array<double, 2>> focus_pixel;  ///< pixel whose nearest surface at mid-shutter is in focus
     std::optional<int> aperture_blades;                ///< 0: a disk, else 3 or more
     std::optional<double> aperture_rotation_deg;       ///< 0
+    std::optional<double> aperture_roundness;          ///< 0: straight blades, to 1: a disk
     std::optional<double> aperture_ratio;              ///< 1; height of the circle of confusion over its width
 };
 
@@ -83,17 +85,19 @@ enum class VisibilityMethod {
     kStochastic,    ///< stochastic rasterization: every sample has its own (x, y, u, v, t)
     kAccumulation,  ///< spp passes, each with one (u, v, t) for the whole picture (Haeberli & Akeley 1990): ghosts
     kInterleaved,   ///< InterleaveUVT (Fatahalian et al. 2009): 64 or more (u, v, t) that blocks of pixels share
-    kRaytrace       ///< the samples of kStochastic, traced with Embree; Error(kBackend) in a build without it
+    kRaytrace,      ///< the samples of kStochastic, traced with Embree; Error(kBackend) in a build without it
+    kMicropolygon   ///< the samples of kStochastic, triangles diced to about a pixel (Reyes; Cook et al. 1987)
 };
 
 struct MethodSettings {
     VisibilityMethod visibility = VisibilityMethod::kStochastic;
-    std::string culling =
-        "auto";  ///< "auto" or a combination of culling_tests(); kRaytrace culls nothing: "auto" alone
-    std::string shading = "pixel";  ///< how often visible surfaces are shaded
-    std::uint32_t seed = 0;         ///< of the sample pattern
-    int threads = 0;                ///< 0: all processors
-    int tile_size = 32;             ///< pixels, 8, 16 or 32: never changes the picture
+    /// "auto" or a combination of culling_tests(); kRaytrace and kMicropolygon have no use for one: "auto" alone.
+    std::string culling = "auto";
+    std::string shading = "pixel";             ///< how often visible surfaces are shaded
+    ShadowMode shadows = ShadowMode::kMoving;  ///< kStill: of everything as it is at mid-shutter
+    std::uint32_t seed = 0;                    ///< of the sample pattern
+    int threads = 0;                           ///< 0: all processors
+    int tile_size = 32;                        ///< pixels, 8, 16 or 32: never changes the picture
 };
 
 struct RenderSettings {

@@ -65,6 +65,7 @@ void check(const CameraSettings& camera, const ImageSettings& image) {
     check_from("--lens-radius", camera.lens_radius, 0.0, kHuge);
     check_above("--focus-distance", camera.focus_distance, 0.0);
     check_from("--aperture-rotation", camera.aperture_rotation_deg, -kHuge, kHuge);
+    check_from("--aperture-roundness", camera.aperture_roundness, 0.0, 1.0);
     check_above("--aperture-ratio", camera.aperture_ratio, 0.0);
     if (camera.fstop && camera.lens_radius)
         refuse("--fstop and --lens-radius say the same in two ways; give one of them");
@@ -114,10 +115,28 @@ void check(const AnimationSettings& animation) {
     check_from("--fps", animation.fps, 0.0, 1e6);
 }
 
+const char* name_of(VisibilityMethod method) {
+    switch (method) {
+        case VisibilityMethod::kAccumulation:
+            return "accumulation";
+        case VisibilityMethod::kInterleaved:
+            return "interleaved";
+        case VisibilityMethod::kRaytrace:
+            return "raytrace";
+        case VisibilityMethod::kMicropolygon:
+            return "micropolygon";
+        case VisibilityMethod::kStochastic:
+            break;
+    }
+    return "stochastic";
+}
+
 void check(const MethodSettings& method) {
-    if (method.visibility == VisibilityMethod::kRaytrace && method.culling != "auto") {
-        refuse(fmt::format("--culling {}: --visibility raytrace has nothing to cull; leave one of them out",
-                           method.culling));
+    const bool culls =
+        method.visibility != VisibilityMethod::kRaytrace && method.visibility != VisibilityMethod::kMicropolygon;
+    if (!culls && method.culling != "auto") {
+        refuse(fmt::format("--culling {}: --visibility {} has no use for it; leave one of them out", method.culling,
+                           name_of(method.visibility)));
     }
     check_whole("--threads", method.threads, 0, 1024);
     if (method.tile_size != 8 && method.tile_size != 16 && method.tile_size != 32) {
@@ -179,18 +198,16 @@ const char* name_of(RollingShutter rolling) {
     return "none";
 }
 
-const char* name_of(VisibilityMethod method) {
-    switch (method) {
-        case VisibilityMethod::kAccumulation:
-            return "accumulation";
-        case VisibilityMethod::kInterleaved:
-            return "interleaved";
-        case VisibilityMethod::kRaytrace:
-            return "raytrace";
-        case VisibilityMethod::kStochastic:
+const char* name_of(ShadowMode mode) {
+    switch (mode) {
+        case ShadowMode::kOff:
+            return "off";
+        case ShadowMode::kStill:
+            return "still";
+        case ShadowMode::kMoving:
             break;
     }
-    return "stochastic";
+    return "moving";
 }
 
 using Json = nlohmann::ordered_json;
@@ -244,6 +261,7 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
     put(json, "focus_pixel", camera.focus_pixel);
     put(json, "aperture_blades", camera.aperture_blades);
     put(json, "aperture_rotation_deg", camera.aperture_rotation_deg);
+    put(json, "aperture_roundness", camera.aperture_roundness);
     put(json, "aperture_ratio", camera.aperture_ratio);
     json["motion_blur"] = shutter.motion_blur;
     put(json, "shutter", shutter.shutter);
@@ -256,6 +274,7 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
     json["animation"] = animation.animation;
     json["visibility"] = name_of(method.visibility);
     json["shading"] = method.shading;
+    json["shadows"] = name_of(method.shadows);
     json["seed"] = method.seed;
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

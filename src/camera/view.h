@@ -28,6 +28,7 @@ struct Lens {
     double fstop = 0.0;           ///< 0: pinhole
     int blades = 0;               ///< 0: a disk
     double rotation_deg = 0.0;
+    double roundness = 0.0;  ///< of the blades: 0 straight, 1 arcs of the disk
     bool pinhole() const { return radius == 0.0; }
 };
 
@@ -63,7 +64,10 @@ struct View {
 glm::dmat4 world_to_camera(const View& view, const Pose& pose);
 
 /// A point of camera space in raster clip space: x, y, w and the depth z.
-glm::dvec4 to_raster_clip(const View& view, const glm::dvec3& camera_space);
+inline glm::dvec4 to_raster_clip(const View& view, const glm::dvec3& camera_space) {
+    const double depth = -camera_space.z;
+    return {view.fx * camera_space.x, view.fy * camera_space.y, view.perspective ? depth : 1.0, depth};
+}
 
 /// Resolves camera, lens and shutter of frame number `frame`. Throws Error(kUsage) for a camera, node or animation that
 /// the scene does not have.

@@ -1,8 +1,10 @@
 // `pentaprism bench [SCENE...]`: the laboratory: every culling test on scenes, side by side.
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
+#include <limits>
 #include <memory>
 #include <pentaprism/bench.h>
 #include <pentaprism/error.h>
@@ -25,7 +27,7 @@ struct BenchCommand {
     std::vector<std::string> scenes, effects, methods;
     bool quick = false, json = false, embree = false;
     std::optional<std::pair<int, int>> resolution;
-    std::optional<std::int64_t> spp, frame, seed, threads, runs;
+    std::optional<std::int64_t> spp, frame, seed, threads, runs, tests;
     std::optional<double> seconds, fps;
     fs::path folder;
     Verbosity verbosity;
@@ -42,6 +44,20 @@ std::vector<std::string> split(const std::string& option, const std::string& tex
     return names;
 }
 
+/// The library speaks of --culling, of which most methods are values.
+void check_methods(const std::vector<std::string>& methods) {
+    const std::vector<std::string> known = bench_methods();
+    for (const std::string& method : methods) {
+        if (std::find(known.begin(), known.end(), method) != known.end()) continue;
+        try {
+            check_culling(method);
+        } catch (const Error& error) {
+            const std::string said = error.what(), option = "--culling";
+            throw Error(error.kind(), said.rfind(option, 0) == 0 ? "--methods" + said.substr(option.size()) : said);
+        }
+    }
+}
+
 BenchPlan plan_of(const BenchCommand& command) {
     BenchPlan plan = command.quick ? quick_bench_plan() : full_bench_plan();
     RenderSettings& settings = plan.settings;
@@ -55,9 +71,11 @@ BenchPlan plan_of(const BenchCommand& command) {
     if (command.seed) settings.method.seed = static_cast<std::uint32_t>(*command.seed);
     if (command.threads) settings.method.threads = static_cast<int>(*command.threads);
     if (command.runs) plan.runs = static_cast<int>(*command.runs);
+    if (command.tests) plan.most_tests = *command.tests;
     if (command.seconds) plan.seconds = *command.seconds;
     if (command.embree) plan.peer_threads = {1, settings.method.threads};
     plan.images = !command.folder.empty();
+    check_methods(plan.methods);
     complete_settings(settings);
     return plan;
 }
@@ -100,21 +118,23 @@ void add_what(CLI::App& command, BenchCommand& bench) {
     const std::string group = "What is measured";
     command.add_option("SCENE", bench.scenes, "Scenes (default: the built-in ones that the literature measured)")
         ->type_name("");
-    command.add_flag("--quick", bench.quick, "Two scenes at 192x144: under a minute")->group(group);
+    command.add_flag("--quick", bench.quick, "Two scenes at 160x120, 4 samples per pixel: under a minute")
+        ->group(group);
     std::string effects, methods;
     for (const BenchEffect& effect : bench_effects()) effects += (effects.empty() ? "" : ", ") + effect.name;
     for (const std::string& method : bench_methods()) methods += (methods.empty() ? "" : ", ") + method;
     add_value(command, group, "--effects", "LIST", "Amounts of blur, with commas (default all): " + effects,
               [&](const std::string& text) { bench.effects = split("--effects", text); });
-    add_value(command, group, "--methods", "LIST", "Methods, with commas (default all): " + methods,
+    add_value(command, group, "--methods", "LIST",
+              "Values of render --culling, combinations, too, with commas (default: " + methods + ")",
               [&](const std::string& text) { bench.methods = split("--methods", text); });
     add_value(command, group, "--peer", "embree", "Time visibility against this ray tracer, too",
               [&](const std::string& text) {
                   bench.embree = parse_choice<bool>("--peer", text, {{"embree", true}});
               });
-    add_value(command, group, "-r,--resolution", "WxH", "Size in pixels (default 1024x768; --quick 192x144)",
+    add_value(command, group, "-r,--resolution", "WxH", "Size in pixels (default 1024x768; --quick 160x120)",
               [&](const std::string& text) { bench.resolution = parse_size("--resolution", text); });
-    add_value(command, group, "-s,--spp", "N", "Samples per pixel, 1 to 4096 (default 16)",
+    add_value(command, group, "-s,--spp", "N", "Samples per pixel, 1 to 4096 (default 16; --quick 4)",
               [&](const std::string& text) { bench.spp = parse_whole("--spp", text, 1, 4096); });
     add_value(command, group, "--frame", "N", "The frame (default 24 of a built-in scene, 0 of a file)",
               [&](const std::string& text) { bench.frame = parse_whole("--frame", text, 0, 999'999'999); });
@@ -129,8 +149,14 @@ void add_how(CLI::App& command, BenchCommand& bench) {
     add_value(command, group, "--runs", "N", "Timed runs of each method, in turn; medians count (default 5; --quick 3)",
               [&](const std::string& text) { bench.runs = parse_whole("--runs", text, 1, 1000); });
     add_value(command, group, "--seconds", "S",
-              "A slower method gets as many runs as fit in S seconds, at least one (default 4; --quick 0.1)",
+              "A slower method gets as many runs as fit in S seconds, at least one (default 4; --quick 0.05)",
               [&](const std::string& text) { bench.seconds = parse_number("--seconds", text); });
+    add_value(command, group, "--tests", "N",
+              "Where the box alone needs over N exact tests, a part of the tiles is measured; 0: always all (default "
+              "32000000; --quick 1000000)",
+              [&](const std::string& text) {
+                  bench.tests = parse_whole("--tests", text, 0, std::numeric_limits<std::int64_t>::max());
+              });
     add_value(command, group, "-t,--threads", "N", "Processors to use (default: PENTAPRISM_THREADS, else all)",
               [&](const std::string& text) { bench.threads = parse_whole("--threads", text, 1, 1024); });
     const std::string outputs = "Outputs";

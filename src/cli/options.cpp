@@ -115,6 +115,8 @@ void add_lens_options(CLI::App& command, CameraSettings& camera) {
               });
     add_number(command, group, "--aperture-rotation", "DEG", "Turns the iris; degrees (default: the camera's, else 0)",
                camera.aperture_rotation_deg);
+    add_number(command, group, "--aperture-roundness", "R", "Curves the blades, 0: straight, to 1: a disk (default 0)",
+               camera.aperture_roundness);
     add_number(command, group, "--aperture-ratio", "R",
                "Height over width of the circle of confusion (default: the camera's, else 1)", camera.aperture_ratio);
     add_planned_value(command, group, "--focus-range", "NEAR,FAR", "Keep this range of depth sharp; metres");
@@ -192,17 +194,26 @@ void add_method_options(CLI::App& command, MethodSettings& method) {
                   check_culling(text);
                   method.culling = text;
               });
-    add_value(command, group, "--visibility", "stochastic|accumulation|interleaved|raytrace",
+    add_value(command, group, "--visibility", "stochastic|accumulation|interleaved|raytrace|micropolygon",
               "How visible surfaces are found (default stochastic)", [&](const std::string& text) {
-                  method.visibility = parse_choice<VisibilityMethod>("--visibility", text,
-                                                                     {{"stochastic", VisibilityMethod::kStochastic},
-                                                                      {"accumulation", VisibilityMethod::kAccumulation},
-                                                                      {"interleaved", VisibilityMethod::kInterleaved},
-                                                                      {"raytrace", VisibilityMethod::kRaytrace}});
+                  method.visibility =
+                      parse_choice<VisibilityMethod>("--visibility", text,
+                                                     {{"stochastic", VisibilityMethod::kStochastic},
+                                                      {"accumulation", VisibilityMethod::kAccumulation},
+                                                      {"interleaved", VisibilityMethod::kInterleaved},
+                                                      {"raytrace", VisibilityMethod::kRaytrace},
+                                                      {"micropolygon", VisibilityMethod::kMicropolygon}});
               });
     add_partly_built(command, group, "--backend", "What computes", "cpu", {"gl"});
     add_partly_built(command, group, "--shading", "How often visible surfaces are shaded", "pixel",
                      {"sample", "decoupled"});
+    add_value(command, group, "--shadows", "off|still|moving",
+              "Shadows: none, of mid-shutter, or at each time of the shutter (default moving)",
+              [&](const std::string& text) {
+                  method.shadows = parse_choice<ShadowMode>(
+                      "--shadows", text,
+                      {{"off", ShadowMode::kOff}, {"still", ShadowMode::kStill}, {"moving", ShadowMode::kMoving}});
+              });
     add_planned_value(command, group, "--sampler", "NAME", "Sample pattern");
     add_value(command, group, "--seed", "N", "Seed of the sample pattern (default 0)", [&](const std::string& text) {
         method.seed =

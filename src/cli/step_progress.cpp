@@ -17,7 +17,9 @@ double seconds_between(ProgressStyle style) {
 
 }  // namespace
 
-StepProgress::StepProgress(const Verbosity& verbosity) : style_(resolve_style(verbosity)) {}
+StepProgress::StepProgress(const Verbosity& verbosity) : style_(resolve_style(verbosity)) {
+    if (style_ == ProgressStyle::kPlain) last_shown_ = start_;  // what is soon over needs no line
+}
 
 StepProgress::~StepProgress() {
     if (style_ == ProgressStyle::kTty) set_status_line("");

@@ -59,4 +59,8 @@ void cover_vectors(const TileWork& work, Hits& hits, CoverCounts& counts);
 /// v, t). `tested` counts the triple's samples in the box. Equals the two above.
 void cover_shared(const TileWork& work, Hits& hits, CoverCounts& counts);
 
+/// Triangles diced to micropolygons of about a pixel (cover/dice.h). Differs from the others where rounding at an edge
+/// or between two depths decides.
+void cover_micropolygons(const TileWork& work, Hits& hits, CoverCounts& counts);
+
 }  // namespace pentaprism

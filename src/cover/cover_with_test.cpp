@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "cover/cover.h"
 #include "cover/exact.h"
@@ -144,6 +145,9 @@ class Walk {
     void cover_sample_of(int x, int y, int slot, std::size_t job, int lane) {
         const SampleVector& vector = vectors_[job];
         const LocalSample sample{vector.x[lane], vector.y[lane], vector.u[lane], vector.v[lane], vector.t[lane]};
+        // Samples of another segment of the path are that segment's; no test has to find that out.
+        const float fraction = std::fma(sample.t, triangle_.segments, -triangle_.segment);
+        if (!(fraction >= 0.0f && fraction < 1.0f)) return;
         if (!keeps(Grain::kTile, sample, 0) || !keeps(Grain::kPixel, sample, lane) || !keeps(Grain::kBucket, sample, 0))
             return;
         ++counts_.tested;

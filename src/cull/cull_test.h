@@ -41,7 +41,7 @@ struct alignas(16) CullMemory {
         return const_cast<CullMemory*>(this)->as<T>();
     }
 };
-using CullSetup = CullMemory<4096>;  ///< of a triangle
+using CullSetup = CullMemory<4608>;  ///< of a triangle
 
 /// Of a triangle and a footprint.
 struct CullState : CullMemory<640> {

@@ -40,6 +40,7 @@ struct Frame {
     std::vector<float> depths;                 ///< orthographic cameras only: z of each point (else z = w)
     std::vector<std::uint32_t> corners;        ///< 3 for each triangle: into `points`, at knot 0
     std::vector<std::uint32_t> part_of;        ///< for each triangle: into `parts`
+    std::vector<Index> animations;             ///< clips that play
     Pose middle;                               ///< the scene at mid-shutter, the shading time
     std::shared_ptr<const Textures> textures;  ///< set by who renders, once for all frames; null: factors alone count
 

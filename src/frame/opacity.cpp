@@ -37,18 +37,6 @@ std::uint32_t permuted(std::uint32_t i, std::uint32_t n, std::uint32_t seed) {
     return i;
 }
 
-// Stratified over the pixel's samples, independent between triangles: two layers, also of one mesh, must not hide
-// together.
-float threshold(std::uint32_t triangle, int px, int py, int sample_index, int spp) {
-    const std::uint32_t pixel = mix(mix(static_cast<std::uint32_t>(px)) + static_cast<std::uint32_t>(py));
-    const std::uint32_t seed = mix(pixel + mix(triangle + 0x9e3779b9u));
-    const std::uint32_t index = static_cast<std::uint32_t>(sample_index);
-    const std::uint32_t n = static_cast<std::uint32_t>(std::max(1, spp));
-    const float offset = static_cast<float>(mix(seed + index + 1u) >> 8) * 0x1p-24f;
-    return std::min((static_cast<float>(permuted(index % n, n, seed)) + offset) / static_cast<float>(n),
-                    1.0f - 0x1p-24f);
-}
-
 float vertex_alpha(const Primitive& primitive, const std::array<std::uint32_t, 3>& vertices, const float b[3]) {
     if (primitive.colors.empty()) return 1.0f;
     return b[0] * primitive.colors[vertices[0]].w + b[1] * primitive.colors[vertices[1]].w +
@@ -66,6 +54,44 @@ float texture_alpha(const Frame& frame, const Primitive& primitive, const Textur
 }
 
 }  // namespace
+
+// Stratified over the pixel's samples, independent between triangles: two layers, also of one mesh, must not hide
+// together.
+float opacity_threshold(std::uint32_t triangle, int px, int py, int sample_index, int spp) {
+    const std::uint32_t pixel = mix(mix(static_cast<std::uint32_t>(px)) + static_cast<std::uint32_t>(py));
+    const std::uint32_t seed = mix(pixel + mix(triangle + 0x9e3779b9u));
+    const std::uint32_t index = static_cast<std::uint32_t>(sample_index);
+    const std::uint32_t n = static_cast<std::uint32_t>(std::max(1, spp));
+    const float offset = static_cast<float>(mix(seed + index + 1u) >> 8) * 0x1p-24f;
+    return std::min((static_cast<float>(permuted(index % n, n, seed)) + offset) / static_cast<float>(n),
+                    1.0f - 0x1p-24f);
+}
+
+OpacityTerms opacity_terms(const Frame& frame, std::uint32_t triangle) {
+    OpacityTerms terms;
+    const Part& part = frame.parts[frame.part_of[triangle]];
+    if (part.alpha_mode == AlphaMode::kOpaque || part.material == kNone) return terms;
+    const Material& material = frame.scene->materials[part.material];
+    const Primitive& primitive = frame.scene->meshes[part.placement.mesh].primitives[part.placement.primitive];
+    const std::array<std::uint32_t, 3> vertices = frame.vertices(triangle);
+    terms.mode = part.alpha_mode;
+    terms.cutoff = material.alpha_cutoff;
+    terms.factor = material.base_color.w;
+    terms.colored = !primitive.colors.empty();
+    for (int k = 0; terms.colored && k < 3; ++k) terms.color[k] = primitive.colors[vertices[k]].w;
+    const TextureRef& ref = material.base_color_texture;
+    const Pyramid* pyramid = frame.textures ? frame.textures->color(ref) : nullptr;
+    if (!pyramid) return terms;
+    const std::vector<glm::vec2>& uv = primitive.texcoords[ref.texcoord == 1 ? 1 : 0];
+    if (uv.empty() || pyramid->opacity_codes() == nullptr) {
+        terms.texture_alpha = pyramid->alpha(ref, transform_uv(ref, {0.0f, 0.0f}));
+        return terms;
+    }
+    terms.texture = pyramid;
+    terms.ref = &ref;
+    for (int k = 0; k < 3; ++k) terms.uv[k] = uv[vertices[k]];
+    return terms;
+}
 
 OpacityClass opacity_class(const Frame& frame, std::uint32_t triangle) {
     const Part& part = frame.parts[frame.part_of[triangle]];
@@ -86,7 +112,7 @@ bool is_opaque_at(const Frame& frame, std::uint32_t triangle, const float baryce
     const float alpha = material.base_color.w * vertex_alpha(primitive, vertices, barycentrics) *
                         texture_alpha(frame, primitive, material.base_color_texture, vertices, barycentrics);
     if (part.alpha_mode == AlphaMode::kMask) return alpha >= material.alpha_cutoff;
-    return alpha > threshold(triangle, px, py, sample_index, spp);
+    return alpha > opacity_threshold(triangle, px, py, sample_index, spp);
 }
 
 }  // namespace pentaprism

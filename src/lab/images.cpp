@@ -8,12 +8,6 @@
 namespace pentaprism {
 namespace {
 
-constexpr int kPictureWidth = 512;  // at most, in the report
-
-int shrink_to(int width, int most) {
-    return (width + most - 1) / most;
-}
-
 Field field_of(const CoverMap& map, bool wasted, int spp) {
     Field field{map.width, map.height, std::vector<float>(map.tested.size())};
     for (std::size_t i = 0; i < map.tested.size(); ++i)
@@ -61,14 +55,13 @@ void add_map_images(const std::vector<MethodMap>& maps, const Picture& picture, 
         if (std::all_of(map.lost.begin(), map.lost.end(), [](std::uint32_t n) { return n == 0; })) continue;
         Field lost{map.cover.width, map.cover.height, std::vector<float>(map.lost.begin(), map.lost.end())};
         for (float& value : lost.values) value /= static_cast<float>(spp);
-        images.push_back(image_of(marked_picture(picture, lost, shrink_to(picture.width, kPictureWidth)), scene, effect,
-                                  map.method, BenchImageKind::kMissing, 1.0, mean(lost)));
+        images.push_back(image_of(marked_picture(picture, lost), scene, effect, map.method, BenchImageKind::kMissing,
+                                  1.0, mean(lost)));
     }
 }
 
 BenchImage picture_image(const Picture& picture, const std::string& scene, const std::string& effect) {
-    return image_of(shrunk_picture(picture, shrink_to(picture.width, kPictureWidth)), scene, effect, "",
-                    BenchImageKind::kPicture, 0.0, 0.0);
+    return image_of(displayed(picture), scene, effect, "", BenchImageKind::kPicture, 0.0, 0.0);
 }
 
 }  // namespace pentaprism

@@ -4,7 +4,10 @@
 #include "lab/measure.h"
 
 #include <algorithm>
+#include <map>
+#include <optional>
 
+#include "cull/cull_choice.h"
 #include "lab/machine.h"
 
 namespace pentaprism {
@@ -16,11 +19,15 @@ double median(std::vector<double> values) {
     return n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
 }
 
-BenchRow counted_row(Walk& walk, const std::string& method) {
+BenchRow counted_row(FrameWalk& walk, const std::string& method) {
     reset_peak_memory();
-    const Walk::Counts counts = walk.count(method, nullptr);
+    const FrameWalk::Counts counts = walk.count(method, nullptr);
     BenchRow row;
     row.method = method;
+    const MethodSettings settings = settings_of(method, {});
+    row.conservative = settings.culling == "auto" || is_conservative(parse_culling(settings.culling));
+    row.own_arithmetic =
+        settings.visibility == VisibilityMethod::kMicropolygon || settings.visibility == VisibilityMethod::kRaytrace;
     row.samples = walk.samples();
     row.tested = counts.cover.tested;
     row.covered = counts.cover.covered;
@@ -37,15 +44,45 @@ struct Times {
     std::vector<double> frame, setup;
 };
 
+// Methods that share samples share a walk and its reference.
+class Walks {
+  public:
+    Walks(const PosedPicture& picture, const MeasureOptions& options, const KeepGoing& keep_going)
+        : picture_(picture), options_(options), keep_going_(keep_going) {}
+
+    FrameWalk& of(const std::string& method) {
+        const MethodSettings settings = settings_of(method, options_.method);
+        const bool shared = settings.visibility == VisibilityMethod::kAccumulation ||
+                            settings.visibility == VisibilityMethod::kInterleaved;
+        Entry& entry = entries_[shared ? settings.visibility : VisibilityMethod::kStochastic];
+        if (entry.walk) return *entry.walk;
+        if (shared) entry.samples.emplace(make_samples(picture_.frame, picture_.samples.spp(), settings));
+        entry.walk = std::make_unique<FrameWalk>(picture_.frame, shared ? *entry.samples : picture_.samples,
+                                                 options_.method, options_.most_tests, keep_going_);
+        entry.walk->make_reference();
+        return *entry.walk;
+    }
+
+  private:
+    struct Entry {
+        std::optional<SampleTable> samples;
+        std::unique_ptr<FrameWalk> walk;
+    };
+    const PosedPicture& picture_;
+    const MeasureOptions& options_;
+    const KeepGoing& keep_going_;
+    std::map<VisibilityMethod, Entry> entries_;
+};
+
 }  // namespace
 
 Measurements measure_methods(const PosedPicture& picture, const MeasureOptions& options, const KeepGoing& keep_going) {
-    Walk walk(picture, options.method, options.most_tests, keep_going);
-    walk.make_reference();
+    Walks walks(picture, options, keep_going);
     Measurements result;
-    result.cell = walk.describe();
+    result.cell = walks.of("none").describe();
     std::vector<BenchRow>& rows = result.rows;
     for (const std::string& method : options.methods) {
+        FrameWalk& walk = walks.of(method);
         rows.push_back(counted_row(walk, method));
         // A frame and its questions make one round, and the counting run has told how long a frame takes.
         const double round_ms = std::max(1e-3, 2.0 * rows.back().frame_ms * walk.share());
@@ -56,8 +93,9 @@ Measurements measure_methods(const PosedPicture& picture, const MeasureOptions& 
         for (std::size_t k = 0; k < rows.size(); ++k) {
             const std::size_t i = (k + static_cast<std::size_t>(round)) % rows.size();  // nobody is always the first
             if (round >= rows[i].runs) continue;
-            times[i].frame.push_back(walk.time_frame(rows[i].method));
-            times[i].setup.push_back(walk.time_setup(rows[i].method));
+            FrameWalk& walk = walks.of(rows[i].method);
+            times[i].frame.push_back(walk.time_frame(rows[i].method).ms);
+            times[i].setup.push_back(walk.time_setup(rows[i].method).ms);
         }
     for (std::size_t i = 0; i < rows.size(); ++i) {
         rows[i].frame_ms = median(times[i].frame);

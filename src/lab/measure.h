@@ -2,12 +2,13 @@
 // Every method on one frame: counted once, timed in turn.
 
 #include "lab/walk.h"
+#include "peer/posed_picture.h"
 
 namespace pentaprism {
 
 struct MeasureOptions {
     std::vector<std::string> methods;
-    MethodSettings method;  ///< its `culling` is set for each method
+    MethodSettings method;  ///< visibility and culling are set for each method
     std::int64_t most_tests = 0;
     int runs = 5;
     double seconds = 4.0;

@@ -33,14 +33,6 @@ double heat_place(double value, double largest) {
     return std::max(0.0, 1.0 + std::log10(value / largest) / kDecades);
 }
 
-// Calls body(x, y of the small picture, first pixel's x and y, end's x and y).
-template <class Body>
-void for_each_square(int width, int height, int n, const Body& body) {
-    for (int y = 0; y < (height + n - 1) / n; ++y)
-        for (int x = 0; x < (width + n - 1) / n; ++x)
-            body(x, y, x * n, y * n, std::min(width, (x + 1) * n), std::min(height, (y + 1) * n));
-}
-
 }  // namespace
 
 std::vector<std::uint8_t> encode_png(const Pixels& pixels) {
@@ -60,32 +52,14 @@ std::vector<std::uint8_t> encode_png(const Pixels& pixels) {
     return bytes;
 }
 
-Pixels shrunk_picture(const Picture& picture, int n) {
-    Pixels small{(picture.width + n - 1) / n, (picture.height + n - 1) / n, {}};
-    small.rgb.resize(3 * static_cast<std::size_t>(small.width) * small.height);
-    for_each_square(picture.width, picture.height, n, [&](int x, int y, int x0, int y0, int x1, int y1) {
-        double sum[3] = {0, 0, 0};
-        for (int py = y0; py < y1; ++py)
-            for (int px = x0; px < x1; ++px)
-                for (int c = 0; c < 3; ++c)
-                    sum[c] += picture.rgba[4 * (static_cast<std::size_t>(py) * picture.width + px) + c];
-        for (int c = 0; c < 3; ++c)
-            small.rgb[3 * (static_cast<std::size_t>(y) * small.width + x) + c] =
-                to_srgb8(tone_map(ToneMap::kAces, static_cast<float>(sum[c] / ((x1 - x0) * (y1 - y0)))));
-    });
-    return small;
-}
-
-Field shrunk_field(const Field& field, int n) {
-    Field small{(field.width + n - 1) / n, (field.height + n - 1) / n, {}};
-    small.values.resize(static_cast<std::size_t>(small.width) * small.height);
-    for_each_square(field.width, field.height, n, [&](int x, int y, int x0, int y0, int x1, int y1) {
-        double sum = 0;
-        for (int py = y0; py < y1; ++py)
-            for (int px = x0; px < x1; ++px) sum += field.values[static_cast<std::size_t>(py) * field.width + px];
-        small.values[static_cast<std::size_t>(y) * small.width + x] = static_cast<float>(sum / ((x1 - x0) * (y1 - y0)));
-    });
-    return small;
+Pixels displayed(const Picture& picture) {
+    Pixels pixels{picture.width, picture.height, {}};
+    const std::size_t count = static_cast<std::size_t>(picture.width) * picture.height;
+    pixels.rgb.resize(3 * count);
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t c = 0; c < 3; ++c)
+            pixels.rgb[3 * i + c] = to_srgb8(tone_map(ToneMap::kAces, picture.rgba[4 * i + c]));
+    return pixels;
 }
 
 Pixels heat_colours(const Field& field, float largest) {
@@ -105,14 +79,13 @@ std::vector<std::string> heat_scale(int steps) {
     return colours;
 }
 
-Pixels marked_picture(const Picture& picture, const Field& field, int n) {
-    Pixels pixels = shrunk_picture(picture, n);
-    const Field small = shrunk_field(field, n);
-    for (std::size_t i = 0; i < small.values.size(); ++i) {
+Pixels marked_picture(const Picture& picture, const Field& field) {
+    Pixels pixels = displayed(picture);
+    for (std::size_t i = 0; i < field.values.size(); ++i) {
         std::uint8_t* rgb = &pixels.rgb[3 * i];
         const double grey = 0.5 * (0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]);
         // The square root shows a single lost sample of a pixel, too.
-        const double lost = std::sqrt(std::min(1.0f, std::max(0.0f, small.values[i])));
+        const double lost = std::sqrt(std::min(1.0f, std::max(0.0f, field.values[i])));
         const double red[3] = {255, 40, 30};
         for (int c = 0; c < 3; ++c) rgb[c] = static_cast<std::uint8_t>(std::lround(grey + (red[c] - grey) * lost));
     }

@@ -17,15 +17,14 @@ struct Pixels {
 /// Throws Error(kRender) when libpng cannot.
 std::vector<std::uint8_t> encode_png(const Pixels& pixels);
 
-/// As the PNG writer shows it (ACES curve, sRGB), averaged over n x n pixels in linear light.
-Pixels shrunk_picture(const Picture& picture, int n);
+/// As the PNG writer shows it: ACES curve, sRGB.
+Pixels displayed(const Picture& picture);
 
-/// One number for each pixel, averaged over n x n pixels.
+/// One number for each pixel.
 struct Field {
     int width = 0, height = 0;
     std::vector<float> values;
 };
-Field shrunk_field(const Field& field, int n);
 
 /// Black at 0, then through violet, red and yellow to white at `largest`, by logarithm from `largest` / 1000 up.
 Pixels heat_colours(const Field& field, float largest);
@@ -34,7 +33,7 @@ Pixels heat_colours(const Field& field, float largest);
 std::vector<std::string> heat_scale(int steps);
 
 /// The picture in grey, half as bright, with red where values are above 0 (the more the brighter).
-Pixels marked_picture(const Picture& picture, const Field& field, int n);
+Pixels marked_picture(const Picture& picture, const Field& field);
 
 std::string base64(const std::vector<std::uint8_t>& bytes);
 

@@ -62,7 +62,9 @@ std::string axes(const Plot& plot, const Canvas& canvas) {
     for (const PlotTick& tick : plot.x_ticks) {
         out += fmt::format("<path class=\"grid\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>", canvas.x(tick.at), kTop,
                            kHeight - kBottom);
-        out += text_at(canvas.x(tick.at), kHeight - kBottom + 16, "tick mid", tick.label);
+        const bool last = &tick == &plot.x_ticks.back();  // a label in the middle would be cut off
+        out += text_at(canvas.x(tick.at) + (last ? kRight - 2 : 0), kHeight - kBottom + 16,
+                       last ? "tick end" : "tick mid", tick.label);
     }
     out += text_at(0.5 * (kLeft + kWidth - kRight), kHeight - 6, "tick mid", plot.x_title);
     out += text_at(kLeft, 16, "head", plot.title);

@@ -23,6 +23,7 @@ std::string short_name(const std::string& scene) {
 }
 
 std::string percent(double ste) {
+    if (ste == 0.0) return "\u2013";  // nothing was tested, as by a ray tracer
     const double value = 100.0 * ste;
     return fmt::format("{:.{}f}", value, value < 1.0 ? 2 : 1);
 }
@@ -97,7 +98,8 @@ std::string card(const std::string& number, const std::string& text) {
 std::string cards(const BenchReport& report, const Lookup& lookup) {
     std::int64_t lost = 0, flawed = 0;
     double worst = 1.0, best = 1.0, least_auto = 0.0;
-    for (const BenchRow& row : report.rows) (row.conservative ? lost : flawed) += row.false_culls;
+    for (const BenchRow& row : report.rows)
+        if (!row.own_arithmetic) (row.conservative ? lost : flawed) += row.false_culls;
     for (const BenchRow& row : report.rows) {
         if (row.method != "auto") continue;
         const BenchRow* none = lookup.row(row.scene, row.effect, "none");
@@ -114,7 +116,7 @@ std::string cards(const BenchReport& report, const Lookup& lookup) {
     if (worst < 1.0) out += card(percent(worst) + " %", "lowest STE of the bounding box alone");
     if (best > 1.0)
         out += card(fmt::format("{:.1f} to {:.0f} times", least_auto, best),
-                    "as fast as the bounding box alone, scalar: <i>auto</i>");
+                    "as fast as the bounding box alone, in scalar code: <i>auto</i>");
     out += card(std::to_string(report.rows.size()), fmt::format("measurements in {:.0f} s", report.seconds));
     return out + "</div>\n";
 }
@@ -142,13 +144,26 @@ std::string head(const BenchReport& report, const Lookup& lookup) {
 
 // ---- a scene ----
 
+std::string motion_pixels(const BenchCell& cell) {
+    return fmt::format("{:.1f} px", cell.motion_px);
+}
+std::string blur_pixels(const BenchCell& cell) {
+    return fmt::format("{:.1f} px", cell.blur_px);
+}
+std::string both_pixels(const BenchCell& cell) {
+    return fmt::format("{:.1f}, {:.1f} px", cell.motion_px, cell.blur_px);
+}
+
+// One way from no blur to much.
 struct Path {
-    const char* title;
+    const char *title, *x_title;
     const char* effects[3];
+    std::string (*pixels)(const BenchCell&);
 };
-constexpr Path kPaths[] = {{"Motion blur", {"still", "motion", "motion-x2"}},
-                           {"Defocus blur", {"still", "defocus", "defocus-x2"}},
-                           {"Both", {"still", "both", "both-x2"}}};
+constexpr Path kPaths[] = {
+    {"Motion blur", "motion over the open shutter, in the mean", {"still", "motion", "motion-x2"}, motion_pixels},
+    {"Defocus blur", "radius of the circle of confusion, in the mean", {"still", "defocus", "defocus-x2"}, blur_pixels},
+    {"Both", "motion, radius", {"still", "both", "both-x2"}, both_pixels}};
 
 // From the decade below the least to the decade above the largest, in steps of 1 and 3.
 void fit(Plot& plot, double least, double largest) {
@@ -176,13 +191,18 @@ std::string plots(const BenchScene& scene, const Lookup& lookup, const std::stri
             }
     if (largest == 0.0) return "";
     std::string out = "<div class=\"panels\">\n";
+    const auto pixels = [&](const Path& path, const char* effect) {
+        const BenchCell* cell = lookup.cell(scene.name, effect);
+        return cell ? ": " + path.pixels(*cell) : std::string();
+    };
     for (const Path& path : kPaths) {
         Plot plot;
         plot.title = path.title;
         plot.y_title = y_title;
         plot.y_unit = unit;
-        plot.x_title = "blur";
-        plot.x_ticks = {{0, "none"}, {1, "x1"}, {2, "x2"}};
+        plot.x_title = path.x_title;
+        plot.x_ticks = {
+            {0, "none"}, {1, "x1" + pixels(path, path.effects[1])}, {2, "x2" + pixels(path, path.effects[2])}};
         fit(plot, least, largest);
         int measured = 0;
         for (const std::string& method : lookup.methods) {
@@ -214,7 +234,8 @@ const BenchRow* best_of(const BenchScene& scene, const std::string& effect, cons
 std::string matrix(const BenchScene& scene, const Lookup& lookup) {
     const std::size_t n = lookup.effects.size();
     std::string out = fmt::format(
-        "<div class=\"scroll\"><table><thead><tr><th class=\"t\" rowspan=\"2\">method</th><th class=\"gap\" "
+        "<div class=\"scroll\"><table class=\"tight\"><thead><tr><th class=\"t\" rowspan=\"2\">method</th><th "
+        "class=\"gap\" "
         "colspan=\"{0}\">STE in "
         "percent</th><th class=\"gap\" colspan=\"{0}\">visibility of a frame in ms</th></tr>\n<tr>",
         n);
@@ -304,6 +325,16 @@ std::string missing(const BenchReport& report, const BenchScene& scene) {
            out + "</div>\n";
 }
 
+std::string shares(const BenchScene& scene, const Lookup& lookup) {
+    std::string out;
+    for (const std::string& effect : lookup.effects)
+        if (const BenchCell* cell = lookup.cell(scene.name, effect); cell && cell->share < 1.0)
+            out += fmt::format("{}{} {:.2g} %", out.empty() ? "" : ", ", effect, 100.0 * cell->share);
+    return out.empty() ? ""
+                       : "<p class=\"small soft\">Part of the picture's tiles that was measured: " + out +
+                             "; the others whole.</p>\n";
+}
+
 std::string scene_section(const BenchReport& report, const BenchScene& scene, const Lookup& lookup) {
     const std::string name = short_name(scene.name);
     std::string out = fmt::format("<h2 id=\"{0}\">{0}</h2>\n<p>", escape_html(name));
@@ -322,6 +353,7 @@ std::string scene_section(const BenchReport& report, const BenchScene& scene, co
         "column among tests that "
         "lose nothing.</p>\n";
     out += matrix(scene, lookup);
+    out += shares(scene, lookup);
     return out + heat_maps(report, scene) + missing(report, scene);
 }
 
@@ -404,7 +436,7 @@ std::string all_rows(const BenchReport& report, const Lookup& lookup) {
                       "</div>\n<div class=\"scroll\"><table class=\"sortable\" id=\"all\"><thead><tr>";
     int column = 0;
     for (const char* title : {"scene", "effect", "method", "STE, %", "tests", "tests a sample", "tests a hit",
-                              "setup ms", "test ms", "frame ms", "lost", "runs", "peak MB"})
+                              "setup ms", "test ms", "frame ms", "lost", "tiles, %", "runs", "peak MB"})
         out +=
             fmt::format("<th{} aria-sort=\"none\"><button>{}</button></th>", column++ < 3 ? " class=\"t\"" : "", title);
     out += "</tr></thead><tbody>\n";
@@ -416,14 +448,16 @@ std::string all_rows(const BenchReport& report, const Lookup& lookup) {
                            escape_html(short_name(row.scene)), row.effect, escape_html(row.method));
         const double per_sample =
             static_cast<double>(row.tested) / static_cast<double>(std::max<std::int64_t>(1, row.samples));
+        const BenchCell* measured = lookup.cell(row.scene, row.effect);
+        const double share = measured ? measured->share : 1.0;
         out += cell(row.ste(), percent(row.ste())) + cell(static_cast<double>(row.tested), grouped(row.tested)) +
                cell(per_sample, fmt::format("{:.2f}", per_sample)) +
                cell(row.tests_per_covered(), fmt::format("{:.2f}", row.tests_per_covered())) +
                cell(row.setup_ms, milliseconds(row.setup_ms)) + cell(row.test_ms, milliseconds(row.test_ms)) +
                cell(row.frame_ms, milliseconds(row.frame_ms)) +
                cell(static_cast<double>(row.false_culls), grouped(row.false_culls), row.false_culls > 0 ? "bad" : "") +
-               cell(row.runs, std::to_string(row.runs)) + cell(row.peak_mb, fmt::format("{:.0f}", row.peak_mb)) +
-               "</tr>\n";
+               cell(share, fmt::format("{:.3g}", 100.0 * share)) + cell(row.runs, std::to_string(row.runs)) +
+               cell(row.peak_mb, fmt::format("{:.0f}", row.peak_mb)) + "</tr>\n";
     }
     return out + "</tbody></table></div>\n";
 }

@@ -24,6 +24,7 @@ Json to_json(const BenchRow& r) {
             {"method", r.method},
             {"backend", r.backend},
             {"conservative", r.conservative},
+            {"own_arithmetic", r.own_arithmetic},
             {"ste", r.ste()},
             {"samples", r.samples},
             {"tested", r.tested},

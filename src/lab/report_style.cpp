@@ -47,6 +47,7 @@ table{border-collapse:collapse;font-size:.88rem;font-variant-numeric:tabular-num
 th,td{padding:5px 10px;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
 th{font-weight:600;vertical-align:bottom;background:var(--card)}
 thead th{border-bottom:2px solid var(--line)}
+.tight{font-size:.8rem}.tight th,.tight td{padding:4px 7px}
 th.t,td.t{text-align:left}
 td.gap,th.gap{border-left:2px solid var(--line)}
 td.best{background:var(--good);font-weight:600}
@@ -62,9 +63,10 @@ select{font:inherit;color:var(--ink);background:var(--card);border:1px solid var
 figure{margin:0}
 figcaption{font-size:.84rem;color:var(--soft);line-height:1.35;margin-top:4px}
 figcaption b{color:var(--ink)}
-img{max-width:100%;height:auto;display:block;border-radius:4px}
+img{width:100%;height:auto;display:block;border-radius:4px}
 .pictures{display:grid;grid-template-columns:repeat(auto-fill,minmax(260px,1fr));gap:14px;margin:12px 0}
 .maps{display:grid;grid-template-columns:repeat(auto-fill,minmax(420px,1fr));gap:16px;margin:12px 0}
+.maps img{image-rendering:pixelated}
 .pair{display:grid;grid-template-columns:1fr 1fr;gap:3px}
 .heat{height:12px;width:260px;border-radius:3px;border:1px solid var(--line)}
 .heatscale{display:grid;grid-template-columns:auto auto auto;width:260px;font-size:.78rem;color:var(--soft)}

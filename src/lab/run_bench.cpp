@@ -12,6 +12,7 @@
 #include "lab/images.h"
 #include "lab/machine.h"
 #include "lab/measure.h"
+#include "trace/tracer.h"
 
 namespace pentaprism {
 namespace {
@@ -26,13 +27,8 @@ std::vector<BenchEffect> chosen_effects(const BenchPlan& plan) {
 }
 
 std::vector<std::string> chosen_methods(const BenchPlan& plan) {
-    const std::vector<std::string> all = bench_methods();
-    if (plan.methods.empty()) return all;
-    std::string names;
-    for (const std::string& name : all) names += (names.empty() ? "" : ", ") + name;
-    for (const std::string& method : plan.methods)
-        if (std::find(all.begin(), all.end(), method) == all.end())
-            throw Error(ErrorKind::kUsage, "there is no method '" + method + "'; there are: " + names);
+    if (plan.methods.empty()) return bench_methods();
+    for (const std::string& method : plan.methods) settings_of(method, plan.settings.method);
     return plan.methods;
 }
 
@@ -106,26 +102,35 @@ class Laboratory {
         if (!plan_.images) return;
         tell(place + ": rendering the picture");
         RenderStats stats;
-        const Picture rendered = render_picture(scene, settings, frame, stats);
+        const Picture rendered =
+            render_picture(scene, resized(settings, plan_.picture_width, plan_.picture_spp), frame, stats);
         report_.images.push_back(picture_image(rendered, scene.name, effect.name));
         if (effect.name == map_effect()) make_maps(scene, settings, frame, effect, keep_going);
     }
 
-    void make_maps(const Scene& scene, RenderSettings settings, double frame, const BenchEffect& effect,
-                   const KeepGoing& keep_going) {
+    static RenderSettings resized(RenderSettings settings, int width, int spp) {
         ImageSettings& image = settings.image;
-        const int width = std::min(image.width, plan_.map_width);
         image.height = std::max(1, image.height * width / image.width);
         image.width = width;
-        image.spp = plan_.map_spp;
+        image.spp = spp;
+        return settings;
+    }
+
+    void make_maps(const Scene& scene, const RenderSettings& as_measured, double frame, const BenchEffect& effect,
+                   const KeepGoing& keep_going) {
+        const RenderSettings settings =
+            resized(as_measured, std::min(as_measured.image.width, plan_.map_width), plan_.map_spp);
         const PosedPicture picture = pose_picture(scene, settings, frame);
-        Walk walk(picture, settings.method, 0, keep_going);
+        FrameWalk walk(picture.frame, picture.samples, settings.method, 0, keep_going);
         walk.make_reference();
-        std::vector<MethodMap> maps(methods_.size());
-        for (std::size_t i = 0; i < methods_.size(); ++i) walk.count(methods_[i], &maps[i]);
+        std::vector<MethodMap> maps;
+        for (const std::string& method : methods_) {
+            // Other ways of sampling and the vector path record no maps.
+            if (settings_of(method, settings.method).culling != "auto") walk.count(method, &maps.emplace_back());
+        }
         RenderStats stats;
         const Picture rendered = render_picture(scene, settings, frame, stats);
-        add_map_images(maps, rendered, image.spp, scene.name, effect.name, report_.images);
+        add_map_images(maps, rendered, plan_.map_spp, scene.name, effect.name, report_.images);
     }
 
     // Heat maps are made of one effect: both blurs, or the last that is measured.
@@ -167,6 +172,8 @@ class Laboratory {
 std::vector<std::string> bench_methods() {
     std::vector<std::string> names;
     for (const CullingChoice& choice : culling_tests()) names.push_back(choice.name);
+    for (const char* visibility : {"accumulation", "interleaved", "micropolygon"}) names.emplace_back(visibility);
+    if (!tracer_name().empty()) names.emplace_back("raytrace");
     return names;
 }
 
@@ -188,11 +195,15 @@ BenchPlan full_bench_plan() {
 BenchPlan quick_bench_plan() {
     BenchPlan plan;
     plan.scenes = {"builtin:hand", "builtin:car"};
-    plan.settings.image.width = 320;
-    plan.settings.image.height = 240;
+    plan.settings.image.width = 160;
+    plan.settings.image.height = 120;
+    plan.settings.image.spp = 4;
+    plan.settings.method.tile_size = 16;
     plan.runs = 3;
-    plan.seconds = 0.1;
-    plan.most_tests = 2'000'000;
+    plan.seconds = 0.05;
+    plan.most_tests = 1'000'000;
+    plan.picture_width = 320;
+    plan.picture_spp = 16;
     plan.map_width = 160;
     plan.map_spp = 2;
     return plan;

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <mutex>
 #include <pentaprism/error.h>
+#include <utility>
 
 #include "base/parallel.h"
 
@@ -22,20 +23,46 @@ double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-// The test that a walk without exact tests asks before it refuses; one walk at a time.
-const CullTest* asked_test = nullptr;
-
-bool prepare_asked(const LocalTriangle& triangle, const Footprint& footprint, CullState& state) {
-    return asked_test->prepare(triangle, footprint, state);
+bool prepare_nothing(const LocalTriangle&, const Footprint&, CullState&) {
+    return true;
 }
-bool ask_and_refuse(const CullState& state, const LocalSample& sample) {
-    asked_test->keeps(state, sample);
+bool refuse(const CullState&, const LocalSample&) {
     return false;
 }
-constexpr CullTest kRefuse{"refuse", "", prepare_asked, ask_and_refuse};
+constexpr CullTest kRefuse{"refuse", "", prepare_nothing, refuse};
 
-PixelRect whole(const PosedPicture& picture) {
-    return {0, picture.frame.view.width, 0, picture.frame.view.height};
+// The culling with a last step that refuses every sample: asked when all others have kept it, at the finest of their
+// footprints, so that it adds no other.
+Culling refusing(Culling culling) {
+    Grain finest = Grain::kTile;
+    for (const CullStep& step : culling) finest = std::max(finest, step.grain);
+    culling.push_back({&kRefuse, finest});
+    return culling;
+}
+
+constexpr std::pair<const char*, VisibilityMethod> kVisibilities[] = {
+    {"accumulation", VisibilityMethod::kAccumulation},
+    {"interleaved", VisibilityMethod::kInterleaved},
+    {"micropolygon", VisibilityMethod::kMicropolygon},
+    {"raytrace", VisibilityMethod::kRaytrace},
+};
+
+// Sums up the counts of tiles from all threads.
+class Adder {
+  public:
+    explicit Adder(CoverCounts& sum) : sum_(sum) {}
+    void add(const CoverCounts& counts) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        sum_.add(counts);
+    }
+
+  private:
+    CoverCounts& sum_;
+    std::mutex mutex_;
+};
+
+PixelRect whole(const Frame& frame) {
+    return {0, frame.view.width, 0, frame.view.height};
 }
 
 // Tests of a tile with the bounding box alone.
@@ -92,17 +119,31 @@ Seen middle_at(const Frame& frame, std::uint32_t triangle, int knot) {
 
 }  // namespace
 
-Walk::Walk(const PosedPicture& picture, const MethodSettings& settings, std::int64_t most_tests, KeepGoing keep_going)
-    : picture_(picture), settings_(settings), keep_going_(std::move(keep_going)) {
+MethodSettings settings_of(const std::string& method, MethodSettings settings) {
+    for (const auto& [name, visibility] : kVisibilities)
+        if (method == name) {
+            settings.visibility = visibility;
+            settings.culling = "auto";
+            return settings;
+        }
+    check_culling(method);
+    settings.visibility = VisibilityMethod::kStochastic;
+    settings.culling = method;
+    return settings;
+}
+
+FrameWalk::FrameWalk(const Frame& frame, const SampleTable& samples, const MethodSettings& settings,
+                     std::int64_t most_tests, KeepGoing keep_going)
+    : frame_(frame), samples_(samples), settings_(settings), keep_going_(std::move(keep_going)) {
     choose_tiles(most_tests);
 }
 
-void Walk::choose_tiles(std::int64_t most_tests) {
+void FrameWalk::choose_tiles(std::int64_t most_tests) {
     tiles_ = visibility_of("none").tiles();
     if (most_tests <= 0) return;
-    const Bins bins(picture_.frame, settings_.tile_size, whole(picture_));
+    const Bins bins(frame_, settings_.tile_size, whole(frame_));
     std::int64_t tests = 0;
-    for (const Tile& tile : tiles_) tests += box_tests(bins, tile, picture_.samples.spp());
+    for (const Tile& tile : tiles_) tests += box_tests(bins, tile, samples_.spp());
     if (tests <= most_tests) return;
     const auto all = static_cast<double>(tiles_.size());
     const double wanted = std::max(static_cast<double>(most_tests) / static_cast<double>(tests), 1.0 / all);
@@ -118,13 +159,11 @@ void Walk::choose_tiles(std::int64_t most_tests) {
     share_ = static_cast<double>(tiles_.size()) / all;
 }
 
-Visibility Walk::visibility_of(const std::string& method) const {
-    MethodSettings settings = settings_;
-    settings.culling = method;
-    return Visibility(picture_.frame, picture_.samples, settings, whole(picture_));
+Visibility FrameWalk::visibility_of(const std::string& method) const {
+    return Visibility(frame_, samples_, settings_of(method, settings_), whole(frame_));
 }
 
-double Walk::for_each_tile(const std::string& what, const TileWorkBody& body) {
+double FrameWalk::for_each_tile(const std::string& what, const TileWorkBody& body) {
     const auto start = Clock::now();
     std::atomic<bool> stopped{false};
     std::mutex one_at_a_time;
@@ -139,13 +178,13 @@ double Walk::for_each_tile(const std::string& what, const TileWorkBody& body) {
     return milliseconds_since(start) / share_;
 }
 
-std::int64_t Walk::samples() const {
+std::int64_t FrameWalk::samples() const {
     std::int64_t pixels = 0;
     for (const Tile& tile : tiles_) pixels += std::int64_t{tile.x1 - tile.x0} * (tile.y1 - tile.y0);
-    return pixels * picture_.samples.spp();
+    return pixels * samples_.spp();
 }
 
-void Walk::make_reference() {
+void FrameWalk::make_reference() {
     const Visibility visibility = visibility_of("none");
     reference_.resize(tiles_.size());
     for_each_tile("none: the reference", [&](std::size_t i, Hits&) {
@@ -154,16 +193,16 @@ void Walk::make_reference() {
     });
 }
 
-std::int64_t Walk::reference_bytes() const {
+std::int64_t FrameWalk::reference_bytes() const {
     std::size_t bytes = 0;
     for (const Hits& hits : reference_)
         bytes += hits.depth.capacity() * sizeof(float) + hits.triangle.capacity() * sizeof(std::uint32_t);
     return static_cast<std::int64_t>(bytes);
 }
 
-Walk::Counts Walk::count(const std::string& method, MethodMap* map) {
-    const View& view = picture_.frame.view;
-    const int slots = picture_.samples.slots();
+FrameWalk::Counts FrameWalk::count(const std::string& method, MethodMap* map) {
+    const View& view = frame_.view;
+    const int slots = samples_.slots();
     if (map != nullptr) {
         const std::size_t pixels = static_cast<std::size_t>(view.width) * view.height;
         *map = {method,
@@ -171,7 +210,8 @@ Walk::Counts Walk::count(const std::string& method, MethodMap* map) {
                 std::vector<std::uint32_t>(pixels)};
     }
     Counts result;
-    std::mutex adding;
+    Adder adder(result.cover);
+    std::atomic<std::int64_t> all_lost{0};
     const auto start = Clock::now();
     const Visibility visibility = visibility_of(method);
     const double bins_ms = milliseconds_since(start);
@@ -184,61 +224,83 @@ Walk::Counts Walk::count(const std::string& method, MethodMap* map) {
             ++lost;
             if (map != nullptr) ++map->lost[static_cast<std::size_t>(py) * view.width + px];
         });
-        const std::lock_guard<std::mutex> lock(adding);
-        result.cover.add(counts);
-        result.lost += lost;
+        all_lost += lost;
+        adder.add(counts);
     });
+    result.lost = all_lost;
     result.frame_ms = bins_ms + tiles_ms;
     return result;
 }
 
-double Walk::time_frame(const std::string& method) {
+FrameWalk::Timed FrameWalk::time_frame(const std::string& method) {
+    Timed timed;
+    Adder adder(timed.cover);
     const auto start = Clock::now();
     const Visibility visibility = visibility_of(method);
-    const double bins_ms = milliseconds_since(start);
-    return bins_ms + for_each_tile(method + ": timing", [&](std::size_t i, Hits& hits) {
-               CoverCounts counts;
-               visibility.cover(tiles_[i], hits, counts);
-           });
+    timed.ms = milliseconds_since(start);
+    timed.ms += for_each_tile(method + ": timing", [&](std::size_t i, Hits& hits) {
+        CoverCounts counts;
+        visibility.cover(tiles_[i], hits, counts);
+        adder.add(counts);
+    });
+    return timed;
 }
 
-double Walk::time_setup(const std::string& method) {
+FrameWalk::Timed FrameWalk::time_setup(const std::string& method) {
+    Timed timed;
+    const MethodSettings settings = settings_of(method, settings_);
     const auto start = Clock::now();
-    const Bins bins(picture_.frame, settings_.tile_size, whole(picture_));
-    const double bins_ms = milliseconds_since(start);
-    asked_test = find_cull_test(method);
-    if (asked_test == nullptr) return bins_ms;
-    return bins_ms + for_each_tile(method + ": timing its questions", [&](std::size_t i, Hits& hits) {
-               const Tile& tile = tiles_[i];
-               hits.reset(picture_.samples.slots());
-               CoverCounts counts;
-               cover_with_test(
-                   {picture_.frame, picture_.samples, bins.triangles(), bins.tile(tile.x0, tile.y0), tile, nullptr},
-                   kRefuse, hits, counts);
-           });
+    if (settings.culling == "auto") {
+        const Visibility visibility = visibility_of(method);
+        timed.ms = milliseconds_since(start);
+        return timed;
+    }
+    const Bins bins(frame_, settings_.tile_size, whole(frame_));
+    timed.ms = milliseconds_since(start);
+    Adder adder(timed.cover);
+    const Culling culling = refusing(parse_culling(settings.culling));
+    timed.ms += for_each_tile(method + ": timing its questions", [&](std::size_t i, Hits& hits) {
+        const Tile& tile = tiles_[i];
+        hits.reset(samples_.slots());
+        CoverCounts counts;
+        cover_with_test({frame_, samples_, bins.triangles(), bins.tile(tile.x0, tile.y0), tile, nullptr}, culling, hits,
+                        counts);
+        adder.add(counts);
+    });
+    return timed;
 }
 
-BenchCell Walk::describe() const {
-    BenchCell cell;
-    double samples = 0, hits = 0;
-    const Frame& frame = picture_.frame;
-    for (std::size_t i = 0; i < tiles_.size(); ++i)
-        for_each_sample(tiles_[i], picture_.samples.slots(), [&](int px, int py, std::size_t s) {
+BenchCell FrameWalk::describe() {
+    struct Sums {
+        double samples = 0, hits = 0, motion = 0, blur = 0;
+    };
+    const Visibility visibility = visibility_of(samples_.pattern() == SamplePattern::kFree ? "auto" : "none");
+    const std::vector<Tile>& all = visibility.tiles();
+    std::vector<Sums> sums(all.size());  // added up in the order of tiles, so that the result is always the same
+    parallel_for(all.size(), [&](std::size_t i) {
+        const auto hits = buffers_.lease();
+        CoverCounts counts;
+        visibility.cover(all[i], *hits, counts);
+        for_each_sample(all[i], samples_.slots(), [&](int px, int py, std::size_t s) {
             if ((px + py) % 4 != 0) return;  // a quarter of the pixels says as much
-            ++samples;
-            const std::uint32_t triangle = reference_[i].triangle[s];
+            ++sums[i].samples;
+            const std::uint32_t triangle = hits->triangle[s];
             if (triangle == kNoTriangle) return;
-            ++hits;
-            const Seen open = middle_at(frame, triangle, 0),
-                       close = middle_at(frame, triangle, frame.parts[frame.part_of[triangle]].segments);
-            cell.motion_px += std::hypot(close.x - open.x, close.y - open.y);
-            cell.blur_px += 0.5 * (open.radius + close.radius);
+            ++sums[i].hits;
+            const Seen open = middle_at(frame_, triangle, 0),
+                       close = middle_at(frame_, triangle, frame_.parts[frame_.part_of[triangle]].segments);
+            sums[i].motion += std::hypot(close.x - open.x, close.y - open.y);
+            sums[i].blur += 0.5 * (open.radius + close.radius);
         });
+    });
+    Sums sum;
+    for (const Sums& s : sums) sum.samples += s.samples, sum.hits += s.hits, sum.motion += s.motion, sum.blur += s.blur;
+    BenchCell cell;
     cell.share = share_;
-    if (hits > 0) {
-        cell.motion_px /= hits;
-        cell.blur_px /= hits;
-        cell.hit = hits / samples;
+    if (sum.hits > 0) {
+        cell.motion_px = sum.motion / sum.hits;
+        cell.blur_px = sum.blur / sum.hits;
+        cell.hit = sum.hits / sum.samples;
     }
     return cell;
 }

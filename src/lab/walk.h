@@ -6,7 +6,6 @@
 #include <pentaprism/bench.h>
 
 #include "base/pool.h"
-#include "peer/posed_picture.h"
 #include "render/visibility.h"
 
 namespace pentaprism {
@@ -21,11 +20,17 @@ struct MethodMap {
     std::vector<std::uint32_t> lost;
 };
 
-class Walk {
+/// The settings of a method of the laboratory: a value of `--culling` or of `--visibility`. Throws Error(kUsage) for
+/// what is neither.
+MethodSettings settings_of(const std::string& method, MethodSettings settings);
+
+class FrameWalk {
   public:
-    /// `picture` must outlive the walk. Of a picture on which the bounding box alone would need more than `most_tests`
-    /// exact tests, only as many tiles are walked as need about so many, spread evenly; 0: no limit.
-    Walk(const PosedPicture& picture, const MethodSettings& settings, std::int64_t most_tests, KeepGoing keep_going);
+    /// Frame and samples must outlive the walk, and the methods it is asked for must be ones that take such samples
+    /// (render/visibility.h, make_samples). Of a picture on which the bounding box alone would need more than
+    /// `most_tests` exact tests, only as many tiles are walked as need about so many, spread evenly; 0: no limit.
+    FrameWalk(const Frame& frame, const SampleTable& samples, const MethodSettings& settings, std::int64_t most_tests,
+              KeepGoing keep_going);
 
     /// Part of the picture's tiles that is walked.
     double share() const { return share_; }
@@ -33,7 +38,7 @@ class Walk {
     /// Samples of the tiles that are walked.
     std::int64_t samples() const;
 
-    /// Keeps the hits of `none`. Before count() and describe().
+    /// Keeps the hits of `none`. Before count().
     void make_reference();
     std::int64_t reference_bytes() const;
 
@@ -45,14 +50,17 @@ class Walk {
     /// `map`, of the whole picture, may be null.
     Counts count(const std::string& method, MethodMap* map);
 
-    /// Milliseconds of a whole frame: bounds and bins, and the tiles' time over share().
-    double time_frame(const std::string& method);
+    struct Timed {
+        double ms = 0.0;  ///< of a whole frame: bounds and bins, and the tiles' time over share()
+        CoverCounts cover;
+    };
+    Timed time_frame(const std::string& method);
 
-    /// The same of all that comes before exact tests (BenchRow::setup_ms).
-    double time_setup(const std::string& method);
+    /// The same of all that comes before exact tests (BenchRow::setup_ms): nothing is tested.
+    Timed time_setup(const std::string& method);
 
-    /// Motion, blur and coverage, from the reference.
-    BenchCell describe() const;
+    /// Motion, blur and coverage of the whole picture.
+    BenchCell describe();
 
   private:
     using TileWorkBody = std::function<void(std::size_t i, Hits& hits)>;
@@ -60,7 +68,8 @@ class Walk {
     void choose_tiles(std::int64_t most_tests);
     double for_each_tile(const std::string& what, const TileWorkBody& body);
 
-    const PosedPicture& picture_;
+    const Frame& frame_;
+    const SampleTable& samples_;
     MethodSettings settings_;
     KeepGoing keep_going_;
     double share_ = 1.0;

@@ -220,7 +220,7 @@ void Renderer::render(const RenderSettings& settings, double number, RowSink& si
     const PixelRect rendered = grown(crop, film.reach(), view.width, view.height);
     const Visibility visibility(frame, samples, settings.method, rendered);
     const auto binned = Clock::now();
-    const ShadingScene shading(frame);
+    const ShadingScene shading(frame, {settings.method.shadows});
     const auto prepared = Clock::now();
 
     FrameInfo info = frame_info(frame, settings, number, crop);

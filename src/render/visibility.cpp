@@ -50,7 +50,9 @@ void Visibility::cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverM
     hits.reset(samples_.slots());
     if (tracer_) return tracer_->trace(tile, hits);
     const TileWork work{frame_, samples_, bins_->triangles(), bins_->tile(tile.x0, tile.y0), tile, map};
-    if (!culling_.empty())
+    if (method_ == VisibilityMethod::kMicropolygon)
+        cover_micropolygons(work, hits, counts);
+    else if (!culling_.empty())
         cover_with_test(work, culling_, hits, counts);
     else if (samples_.pattern() != SamplePattern::kFree)
         cover_shared(work, hits, counts);

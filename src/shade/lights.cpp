@@ -22,6 +22,7 @@ PosedLight posed(const Light& light, const glm::dmat4& world, const glm::dvec3& 
     const float outer = std::cos(light.outer_cone);
     out.cone_scale = 1.0f / std::max(0.001f, std::cos(light.inner_cone) - outer);
     out.cone_offset = -outer * out.cone_scale;
+    out.outer_cone = light.outer_cone;
     return out;
 }
 
@@ -33,6 +34,7 @@ Lighting default_lighting() {
     Lighting lighting;
     lighting.lights.push_back(sun({0.5f, 0.9f, 0.6f}, {2.3f, 2.2f, 2.05f}));
     lighting.lights.push_back(sun({-0.8f, 0.3f, -0.4f}, {0.35f, 0.42f, 0.55f}));
+    lighting.lights.back().casts_shadow = false;  // a second sun's shadows would look odd; it stands for more sky
     lighting.sky = {0.36f, 0.40f, 0.46f};
     lighting.ground = {0.16f, 0.14f, 0.12f};
     return lighting;

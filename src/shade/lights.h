@@ -15,6 +15,8 @@ struct PosedLight {
     glm::vec3 intensity;  ///< lux, candela
     float range;
     float cone_scale, cone_offset;  ///< spot: share = saturate(cos * scale + offset)^2
+    float outer_cone = 0.0f;        ///< spot: half angle
+    bool casts_shadow = true;
 };
 
 /// Light that comes to a point: `irradiance` on a surface that faces it, from direction `to_light` (unit).

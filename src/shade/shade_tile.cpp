@@ -6,6 +6,7 @@
 #include <span>
 
 #include "bound/local_triangle.h"
+#include "sample/net.h"
 #include "shade/projection.h"
 #include "shade/sample_order.h"
 #include "shade/shaded_triangle.h"
@@ -16,6 +17,7 @@ namespace {
 // A point belongs to one pixel, so a tile may be shaded in pieces of whole blocks: memory stays bounded at 4096 samples
 // a pixel.
 constexpr int kSamplesPerChunk = 1 << 16;
+constexpr int kQuarters = ShadowMap::kSamples;
 constexpr float kBrightest = 0x1p20f;
 
 glm::vec4 contained(const glm::vec3& color) {
@@ -27,20 +29,71 @@ glm::vec4 contained(const glm::vec3& color) {
 class Mean {
   public:
     void add(Float4 b) {
+        ++count_;
         if (!std::isfinite(b[0] + b[1] + b[2])) return;
         sum_ += b;
-        ++count_;
+        ++finite_;
     }
+    int count() const { return count_; }
     glm::vec3 value() const {
         const glm::vec3 inside(std::max(sum_[0], 0.0f), std::max(sum_[1], 0.0f), std::max(sum_[2], 0.0f));
         const float total = inside.x + inside.y + inside.z;
-        return count_ > 0 && total > 0.0f ? inside / total : glm::vec3(1.0f / 3.0f);
+        return finite_ > 0 && total > 0.0f ? inside / total : glm::vec3(1.0f / 3.0f);
     }
 
   private:
     Float4 sum_ = splat(0.0f);
-    int count_ = 0;
+    int count_ = 0, finite_ = 0;
 };
+
+// Barycentrics of a few samples, evenly chosen from any number of them; each inside the triangle.
+class FewPoints {
+  public:
+    // Every `stride`-th is kept; when there are too many, every other one is dropped.
+    void add(Float4 b) {
+        if (seen_++ % stride_ != 0) return;
+        if (count_ == ShadowReceiver::kPoints) {
+            for (int i = 1; i < ShadowReceiver::kPoints / 2; ++i) points_[i] = points_[2 * i];
+            count_ = ShadowReceiver::kPoints / 2;
+            stride_ *= 2;
+        }
+        points_[count_++] = b;
+    }
+    void write(ShadowReceiver& out) const {
+        out.count = count_;
+        for (int i = 0; i < count_; ++i) {
+            Mean one;
+            one.add(points_[i]);
+            out.points[i] = one.value();
+        }
+    }
+
+  private:
+    Float4 points_[ShadowReceiver::kPoints];
+    int count_ = 0, seen_ = 0, stride_ = 1;
+};
+
+// What the samples of a pixel that see one side of a triangle have in common.
+struct PointSamples {
+    Mean all;
+    FewPoints quarter[kQuarters];
+    std::uint32_t color[kQuarters] = {kBackground, kBackground, kBackground, kBackground};
+
+    ShadowReceiver receiver(int q) const {
+        ShadowReceiver out;
+        out.quarter = q;
+        quarter[q].write(out);
+        return out;
+    }
+};
+
+// Of a pixel in the picture, for what has to be random in it.
+std::uint32_t seed_of(const Tile& tile, int pixel, std::uint32_t salt) {
+    const int block = pixel / kLanes, lane = pixel % kLanes;
+    const int x = tile.cell_x() * kCellSize + block % kCellBlocks * kBlockSize + lane % kBlockSize;
+    const int y = tile.cell_y() * kCellSize + block / kCellBlocks * kBlockSize + lane / kBlockSize;
+    return mix(mix(static_cast<std::uint32_t>(x) + 0x9e3779b9u * salt) + static_cast<std::uint32_t>(y));
+}
 
 // One triangle in its cell, localized for each segment of its motion when a sample first asks.
 class LocalRun {
@@ -99,6 +152,9 @@ std::size_t hit_index(int pixel, int slot, int slots) {
 std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& samples, const Tile& tile,
                                const Hits& hits, TileShade& out) {
     const Frame& frame = scene.frame();
+    const Shadows& shadows = scene.shadows();
+    std::int64_t shaded_points = 0;
+    PointSamples points[2];
     const int slots = samples.slots();
     out.point_of_sample.resize(hits.triangle.size());
     out.colors.clear();
@@ -115,28 +171,49 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
             run.start(triangles_[number]);
             const ShadedTriangle shaded(scene, triangles_[number]);
             while (begin < end) {
-                // The samples of one pixel, in index order; those that see the back are another point.
+                // The samples of one pixel, in index order; those that see the back are another point. Where shadows
+                // fall, a point has a colour for each quarter of the shutter.
                 const std::uint16_t pixel = sorted_[begin].pixel;
-                const std::uint32_t none = kBackground;
-                std::uint32_t point[2] = {none, none};
-                Mean mean[2];
+                for (PointSamples& point : points) point = {};
                 for (; begin < end && sorted_[begin].pixel == pixel; ++begin) {
                     const int slot = sorted_[begin].slot;
-                    const Seen seen = run.see(cell.at(pixel, slot));
-                    if (point[seen.front] == none) {
-                        point[seen.front] = static_cast<std::uint32_t>(out.colors.size());
+                    const LocalSample sample = cell.at(pixel, slot);
+                    const Seen seen = run.see(sample);
+                    PointSamples& point = points[seen.front];
+                    point.all.add(seen.barycentrics);
+                    const int quarter =
+                        shadows.any() ? std::min(static_cast<int>(sample.t * kQuarters), kQuarters - 1) : 0;
+                    point.quarter[quarter].add(seen.barycentrics);
+                    if (point.color[quarter] == kBackground) {
+                        point.color[quarter] = static_cast<std::uint32_t>(out.colors.size());
                         out.colors.emplace_back();
                     }
-                    mean[seen.front].add(seen.barycentrics);
-                    out.point_of_sample[hit_index(pixel, slot, slots)] = point[seen.front];
+                    out.point_of_sample[hit_index(pixel, slot, slots)] = point.color[quarter];
                 }
-                for (int front = 0; front < 2; ++front)
-                    if (point[front] != none)
-                        out.colors[point[front]] = contained(shaded.shade(mean[front].value(), front != 0));
+                for (int front = 0; front < 2; ++front) {
+                    const PointSamples& point = points[front];
+                    if (point.all.count() == 0) continue;
+                    ++shaded_points;
+                    shaded.shade(point.all.value(), front != 0, lit_);
+                    const float texel = lit_.shadowed.empty() ? 0.0f : scene.shadow_texel(lit_.position);
+                    for (int q = 0; q < kQuarters; ++q) {
+                        if (point.color[q] == kBackground) continue;
+                        glm::vec3 color = lit_.rest;
+                        ShadowReceiver receiver = point.receiver(q);
+                        receiver.triangle = triangles_[number];
+                        receiver.texel = texel;
+                        for (const LitColor::Share& share : lit_.shadowed) {
+                            receiver.offset = share.offset;
+                            color += share.color * shadows.lit(share.light, receiver, lit_.position,
+                                                               seed_of(tile, pixel, 8 * share.light + 2 * q + front));
+                        }
+                        out.colors[point.color[q]] = contained(color);
+                    }
+                }
             }
         }
     }
-    return static_cast<std::int64_t>(out.colors.size());
+    return shaded_points;
 }
 
 // Lists the covered samples of some blocks pixel by pixel in index order, and numbers the triangles as they come.

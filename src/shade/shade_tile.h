@@ -8,6 +8,7 @@
 
 #include "cover/hits.h"
 #include "sample/sample_table.h"
+#include "shade/shaded_triangle.h"
 #include "shade/shading_scene.h"
 #include "shade/tile_shade.h"
 
@@ -32,6 +33,7 @@ class TileShader {
     std::uint32_t local_triangle(std::uint32_t triangle);
     void grow_table();
 
+    LitColor lit_;
     std::vector<Entry> entries_, sorted_;
     std::vector<std::uint32_t> locals_;     // of each entry: the triangle's number in this chunk
     std::vector<std::uint32_t> triangles_;  // of each number

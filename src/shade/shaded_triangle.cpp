@@ -9,6 +9,9 @@
 namespace pentaprism {
 namespace {
 
+// Cosine of face and light below which points are lifted to the smooth surface, little by little.
+constexpr float kGrazing = 0.1f;
+
 template <typename T>
 T interpolate(const std::vector<T>& values, const std::array<std::uint32_t, 3>& vertices, const glm::vec3& b) {
     return b.x * values[vertices[0]] + b.y * values[vertices[1]] + b.z * values[vertices[2]];
@@ -19,11 +22,30 @@ glm::vec3 normalized_or(const glm::vec3& v, const glm::vec3& otherwise) {
     return length2 > 0.0f && std::isfinite(length2) ? v / std::sqrt(length2) : otherwise;
 }
 
+// A smooth normal may lean so far from the face that the eye's ray would be mirrored into the surface. Then the nearest
+// normal between it and the face's that mirrors the ray along the surface (1/100 above it) takes its place. In the
+// plane of both normals, with the face's as axis, the eye at angle phi and at length r, a normal at angle theta mirrors
+// the eye's direction to height r cos(2 theta - phi).
+glm::vec3 visible_normal(const glm::vec3& normal, const glm::vec3& face, const glm::vec3& to_eye) {
+    const float height = glm::dot(to_eye, face);
+    const float least = std::min(0.9f * height, 0.01f);
+    if (!(height > 0.0f) || 2.0f * glm::dot(normal, to_eye) * glm::dot(normal, face) - height >= least) return normal;
+    const glm::vec3 along = normalized_or(normal - glm::dot(normal, face) * face, glm::vec3(0.0f));
+    const float side = glm::dot(to_eye, along), r = std::sqrt(side * side + height * height);
+    const float turn = std::acos(std::min(least / r, 1.0f)), phi = std::atan2(side, height);
+    const float now = std::atan2(glm::dot(normal, along), glm::dot(normal, face));
+    const float theta = std::clamp(now, 0.5f * (phi - turn), 0.5f * (phi + turn));
+    return std::sin(theta) * along + std::cos(theta) * face;
+}
+
 }  // namespace
 
 ShadedTriangle::ShadedTriangle(const ShadingScene& scene, std::uint32_t triangle)
     : scene_(scene), part_(scene.part_of(triangle)), vertices_(scene.frame().vertices(triangle)) {
     if (part_.material->textured) project(triangle);
+    const glm::vec3 &a = part_.positions[vertices_[0]], &b = part_.positions[vertices_[1]],
+                    &c = part_.positions[vertices_[2]];
+    face_normal_ = normalized_or(glm::cross(b - a, c - a), glm::vec3(0.0f));
 }
 
 // Barycentrics are w * M^-1 * (gx, gy, 1), where M has the corners (x, y, w) as columns; so their change over the
@@ -83,7 +105,24 @@ TextureFootprint ShadedTriangle::footprint(const glm::vec3& barycentrics, int se
     return footprint;
 }
 
-glm::vec3 ShadedTriangle::shade(const glm::vec3& b, bool front) const {
+// How far the smooth surface bulges out over the facet, along the smooth normal: a parabola over each edge that follows
+// the turn of the normals along it (as high as Hanika 2021, Hacking the Shadow Terminator, lifts the point, but nothing
+// where normals are merely tilted, as on leaves that are to look like a ball). Facets that are turned away from the
+// light though their smooth normals are not do not shadow themselves.
+glm::vec3 ShadedTriangle::smooth_offset(const glm::vec3& b, const glm::vec3& normal, bool front) const {
+    float height = 0.0f;
+    for (int i = 0; i < 3; ++i) {
+        const std::uint32_t from = vertices_[i], to = vertices_[(i + 1) % 3];
+        const float turn =
+            glm::dot(part_.normals[to] - part_.normals[from], part_.positions[to] - part_.positions[from]);
+        height += b[i] * b[(i + 1) % 3] * std::max(0.0f, front ? turn : -turn);
+    }
+    return height * normal;
+}
+
+void ShadedTriangle::shade(const glm::vec3& b, bool front, LitColor& out) const {
+    out.shadowed.clear();
+    out.rest = glm::vec3(0.0f);
     const BoundMaterial& bound = *part_.material;
     const Material& material = bound.material;
     const Primitive& primitive = *part_.primitive;
@@ -103,7 +142,10 @@ glm::vec3 ShadedTriangle::shade(const glm::vec3& b, bool front) const {
     glm::vec3 base(material.base_color);
     if (bound.base_color.pyramid) base *= glm::vec3(look_up(bound.base_color));
     if (!primitive.colors.empty()) base *= glm::vec3(interpolate(primitive.colors, vertices_, b));
-    if (material.unlit) return base;
+    if (material.unlit) {
+        out.rest = base;
+        return;
+    }
 
     float metallic = material.metallic, roughness = material.roughness;
     if (bound.metallic_roughness.pyramid) {
@@ -115,18 +157,28 @@ glm::vec3 ShadedTriangle::shade(const glm::vec3& b, bool front) const {
     const glm::vec3 to_eye = scene_.to_eye(position);
     glm::vec3 normal = normalized_or(interpolate(part_.normals, vertices_, b), to_eye);
     if (!front) normal = -normal;
+    normal = visible_normal(normal, front ? face_normal_ : -face_normal_, to_eye);
 
     const Brdf brdf(base, metallic, roughness, glm::dot(normal, to_eye));
     const Lighting& lighting = scene_.lighting();
     glm::vec3 color = material.emissive;
     if (bound.emissive.pyramid) color *= glm::vec3(look_up(bound.emissive));
-    for (const PosedLight& light : lighting.lights) {
-        const Incoming from = incoming(light, position);
+    for (std::size_t i = 0; i < lighting.lights.size(); ++i) {
+        const Incoming from = incoming(lighting.lights[i], position);
         const float cos_light = glm::dot(normal, from.to_light);
         if (!(cos_light > 0.0f) || from.irradiance == glm::vec3(0.0f)) continue;
+        const bool shadowed = scene_.shadows().casts(i);
         const glm::vec3 half = normalized_or(from.to_light + to_eye, normal);
-        color +=
+        const glm::vec3 reflected =
             from.irradiance * brdf.reflected(cos_light, std::max(0.0f, glm::dot(normal, half)), glm::dot(to_eye, half));
+        if (!shadowed) {
+            color += reflected;
+            continue;
+        }
+        const float facing = (front ? 1.0f : -1.0f) * glm::dot(face_normal_, from.to_light);
+        const float lift = std::clamp(1.0f - facing / kGrazing, 0.0f, 1.0f);
+        out.shadowed.push_back({static_cast<std::uint32_t>(i), reflected,
+                                lift > 0.0f ? lift * smooth_offset(b, normal, front) : glm::vec3(0.0f)});
     }
     if (lighting.ambient()) {
         const glm::vec3 mirrored = 2.0f * glm::dot(normal, to_eye) * normal - to_eye;
@@ -136,7 +188,8 @@ glm::vec3 ShadedTriangle::shade(const glm::vec3& b, bool front) const {
             ambient *= 1.0f + material.occlusion_strength * (look_up(bound.occlusion).x - 1.0f);
         color += ambient;
     }
-    return color;
+    out.rest = color;
+    out.position = position;
 }
 
 }  // namespace pentaprism

@@ -7,17 +7,30 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <vector>
 
 #include "shade/shading_scene.h"
 
 namespace pentaprism {
+
+/// A point's colour, with what each light that casts shadows would add if nothing stood in its way.
+struct LitColor {
+    struct Share {
+        std::uint32_t light;
+        glm::vec3 color;
+        glm::vec3 offset;  ///< from the facet to the smooth surface it stands for; only where the light grazes it
+    };
+    glm::vec3 rest{0.0f};
+    std::vector<Share> shadowed;
+    glm::vec3 position{0.0f};  ///< relative to the eye, at mid-shutter
+};
 
 class ShadedTriangle {
   public:
     ShadedTriangle(const ShadingScene& scene, std::uint32_t triangle);
 
     /// Linear colour of the point with these barycentrics (inside the triangle, sum 1) seen from the front or the back.
-    glm::vec3 shade(const glm::vec3& barycentrics, bool front) const;
+    void shade(const glm::vec3& barycentrics, bool front, LitColor& out) const;
 
   private:
     /// The triangle on the screen: pixels, at mid-shutter and through the middle of the lens.
@@ -28,12 +41,14 @@ class ShadedTriangle {
         glm::dvec3 coc;         // c of each corner
     };
     void project(std::uint32_t triangle);
+    glm::vec3 smooth_offset(const glm::vec3& barycentrics, const glm::vec3& normal, bool front) const;
     TextureFootprint footprint(const glm::vec3& barycentrics, int set) const;
 
     const ShadingScene& scene_;
     const ShadedPart& part_;
     std::array<std::uint32_t, 3> vertices_;
     Projection projection_;
+    glm::vec3 face_normal_{0.0f};  // unit, towards the front
 };
 
 }  // namespace pentaprism

@@ -39,12 +39,13 @@ void pose_part(const Frame& frame, const Part& part, const glm::dvec3& eye, Shad
 
 }  // namespace
 
-ShadingScene::ShadingScene(const Frame& frame) : frame_(frame) {
+ShadingScene::ShadingScene(const Frame& frame, const ShadingOptions& options) : frame_(frame) {
     const Scene& scene = *frame.scene;
     const glm::dmat4 camera_to_world = glm::inverse(world_to_camera(frame.view, frame.middle));
     const glm::dvec3 eye(camera_to_world[3]);
     backwards_ = glm::vec3(glm::normalize(glm::dvec3(camera_to_world[2])));
     lighting_ = pose_lights(frame, eye);
+    shadows_ = std::make_unique<Shadows>(frame, lighting_, eye, options.shadows);
 
     materials_.reserve(scene.materials.size() + 1);
     for (const Material& material : scene.materials) materials_.push_back(bind(material, frame.textures.get()));
@@ -57,6 +58,14 @@ ShadingScene::ShadingScene(const Frame& frame) : frame_(frame) {
         parts_[i].material = part.material == kNone ? &materials_.back() : &materials_[part.material];
         pose_part(frame, part, eye, parts_[i]);
     });
+}
+
+float ShadingScene::shadow_texel(const glm::vec3& position) const {
+    const View& view = frame_.view;
+    const double depth = -glm::dot(glm::dvec3(position), glm::dvec3(backwards_));
+    const double w = view.perspective ? std::max(depth, view.depth_near) : 1.0;
+    const double blur = 2.0 * std::abs(view.lens.a + view.lens.b * depth) / w;
+    return static_cast<float>(w / view.fx * std::max(1.0, 0.25 * blur));
 }
 
 glm::vec3 ShadingScene::to_eye(const glm::vec3& position) const {

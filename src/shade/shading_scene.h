@@ -11,6 +11,7 @@
 #include "frame/frame.h"
 #include "shade/footprint.h"
 #include "shade/lights.h"
+#include "shade/shadows.h"
 
 namespace pentaprism {
 
@@ -28,16 +29,24 @@ struct ShadedPart {
     std::vector<glm::vec3> normals;    ///< unit
 };
 
+struct ShadingOptions {
+    ShadowMode shadows = ShadowMode::kMoving;
+};
+
 class ShadingScene {
   public:
     /// Poses all parts of the frame. The frame, its scene and its textures must outlive this.
-    explicit ShadingScene(const Frame& frame);
+    explicit ShadingScene(const Frame& frame, const ShadingOptions& options = {});
     ShadingScene(const ShadingScene&) = delete;
     ShadingScene& operator=(const ShadingScene&) = delete;
 
     const Frame& frame() const { return frame_; }
     const ShadedPart& part_of(std::uint32_t triangle) const { return parts_[frame_.part_of[triangle]]; }
     const Lighting& lighting() const { return lighting_; }
+    const Shadows& shadows() const { return *shadows_; }
+
+    /// How large a texel of a shadow map should be there, metres: a pixel, and a quarter of what defocus blurs.
+    float shadow_texel(const glm::vec3& position) const;
 
     /// Unit vector from a point to the eye; for an orthographic camera the same everywhere.
     glm::vec3 to_eye(const glm::vec3& position) const;
@@ -47,6 +56,7 @@ class ShadingScene {
     std::vector<BoundMaterial> materials_;  // the scene's, then the default one
     std::vector<ShadedPart> parts_;
     Lighting lighting_;
+    std::unique_ptr<const Shadows> shadows_;
     glm::vec3 backwards_;  // against the direction of view
 };
 

@@ -54,6 +54,7 @@ done <<'END'
 --aperture-blades -3 --aperture-blades
 --aperture-rotation x --aperture-rotation
 --aperture-ratio 0 --aperture-ratio
+--aperture-roundness 1.1 --aperture-roundness: 1.1 is not from 0 to 1
 --shutter -0.5 --shutter
 --shutter 1e999 --shutter
 --shutter-position middle --shutter-position
@@ -77,6 +78,10 @@ done <<'END'
 --frames 1,1 listed twice
 --frames 1-3 3 frames need a place for their number
 --culling psychic --culling: 'psychic' is not one of auto
+--culling none+psychic --culling: 'psychic' is not one of auto
+--culling none+ --culling: '' is not one of auto
+--culling none+auto 'auto' stands alone
+--culling hull@town --culling hull@town: 'town' is not one of tile, pixel, bucket
 --visibility xray --visibility
 --backend quantum --backend
 --shading never --shading

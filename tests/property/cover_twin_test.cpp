@@ -1,5 +1,5 @@
-// The vector kernels of every CPU target, and the scalar path with and without culling, give the same depths and
-// triangles bit for bit.
+// The vector kernels of every CPU target, those for samples that share lens position and time, and the scalar path with
+// and without culling, give the same depths and triangles bit for bit.
 #include <cstdlib>
 #include <cstring>
 #include <gtest/gtest.h>
@@ -48,14 +48,14 @@ bool has_isa(const char* name) {
     }
 }
 
-const SampleTable& table(int spp, Grouping grouping, double ratio) {
-    static std::map<std::tuple<int, Grouping, double>, SampleTable> tables;
-    const auto key = std::tuple(spp, grouping, ratio);
+const SampleTable& table(int spp, Grouping grouping, double ratio, SamplePattern pattern = SamplePattern::kFree) {
+    static std::map<std::tuple<int, Grouping, double, SamplePattern>, SampleTable> tables;
+    const auto key = std::tuple(spp, grouping, ratio, pattern);
     auto found = tables.find(key);
     if (found == tables.end()) {
         Lens lens;
         lens.ratio = ratio;
-        found = tables.emplace(key, SampleTable(spp, 7, lens, grouping)).first;
+        found = tables.emplace(key, SampleTable(spp, 7, lens, grouping, pattern)).first;
     }
     return found->second;
 }
@@ -122,6 +122,7 @@ struct Blur {
     const char* name;
     bool motion, defocus;
     Grouping grouping;
+    SamplePattern pattern = SamplePattern::kFree;
 };
 void PrintTo(const Blur& blur, std::ostream* out) {
     *out << blur.name;
@@ -134,7 +135,9 @@ class CoverTwins : public ::testing::TestWithParam<Blur> {
         soup.defocus = GetParam().defocus;
         return soup;
     }
-    const SampleTable& samples(int spp, double ratio = 1.0) const { return table(spp, GetParam().grouping, ratio); }
+    const SampleTable& samples(int spp, double ratio = 1.0) const {
+        return table(spp, GetParam().grouping, ratio, GetParam().pattern);
+    }
     static PixelRect whole(const Soup& soup) { return {0, soup.width, 0, soup.height}; }
 };
 
@@ -281,12 +284,14 @@ TEST(CoverTwinsOfOneFrame, AgreeForTablesThatAreGroupedForAnotherBlur) {
         for (const int spp : {4, 13}) expect_twins(frame, table(spp, grouping, 1.0), 32, {0, s.width, 0, s.height});
 }
 
-INSTANTIATE_TEST_SUITE_P(Property, CoverTwins,
-                         ::testing::Values(Blur{"Still", false, false, Grouping::kStill},
-                                           Blur{"Motion", true, false, Grouping::kMotion},
-                                           Blur{"Defocus", false, true, Grouping::kDefocus},
-                                           Blur{"Both", true, true, Grouping::kBoth}),
-                         [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Property, CoverTwins,
+    ::testing::Values(Blur{"Still", false, false, Grouping::kStill}, Blur{"Motion", true, false, Grouping::kMotion},
+                      Blur{"Defocus", false, true, Grouping::kDefocus}, Blur{"Both", true, true, Grouping::kBoth},
+                      Blur{"Accumulation", true, true, Grouping::kBoth, SamplePattern::kAccumulation},
+                      Blur{"AccumulationOfMotion", true, false, Grouping::kMotion, SamplePattern::kAccumulation},
+                      Blur{"Interleaved", true, true, Grouping::kBoth, SamplePattern::kInterleaved}),
+    [](const auto& info) { return info.param.name; });
 
 }  // namespace
 }  // namespace pentaprism

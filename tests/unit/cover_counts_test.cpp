@@ -29,9 +29,10 @@ TEST(CoverCounts, AreTheSumsOfTheirMapAndNest) {
         EXPECT_LE(counts.covered, counts.tested);
         EXPECT_LE(counts.tested, counts.asked);
         EXPECT_LE(counts.kept_footprints, counts.footprints);
-        EXPECT_EQ(counts.asked, counts.kept_footprints * samples.spp());
+        EXPECT_LE(counts.asked, counts.kept_footprints * samples.spp());
         if (std::string(culling) == "none") {
-            EXPECT_EQ(counts.tested, counts.footprints * samples.spp());
+            EXPECT_EQ(counts.tested, counts.asked);
+            EXPECT_EQ(counts.kept_footprints, counts.footprints);
         }
     }
 }

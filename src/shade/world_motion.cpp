@@ -1,0 +1,97 @@
+#include "shade/world_motion.h"
+
+#include <algorithm>
+#include <map>
+
+#include "base/parallel.h"
+
+namespace pentaprism {
+namespace {
+
+using Knots = std::vector<std::vector<glm::dvec3>>;  // [knot][vertex]
+
+// The scene at all knots of all parts; times are exact fractions, so equal times are equal numbers.
+class Poses {
+  public:
+    Poses(const Frame& frame, const std::vector<int>& segments) {
+        for (const int n : segments)
+            for (int k = 0; k <= n; ++k) poses_[static_cast<double>(k) / n];
+        std::vector<std::pair<const double, Pose>*> list;
+        for (auto& entry : poses_) list.push_back(&entry);
+        parallel_for(list.size(), [&](std::size_t i) {
+            list[i]->second = evaluate(*frame.scene, frame.animations, frame.view.shutter.at(list[i]->first));
+        });
+    }
+    const Pose& at(double t) const { return poses_.at(t); }
+
+  private:
+    std::map<double, Pose> poses_;
+};
+
+// What stands still before a moving camera moves in the world; the camera's path has as many pieces as others need.
+int segments_of(const Frame& frame, const Part& part, int most) {
+    if (!may_move(*frame.scene, frame.animations, part.placement)) return 0;
+    return part.moves ? part.segments : most;
+}
+
+Knots pose_knots(const Frame& frame, const Part& part, int segments, const Poses& poses) {
+    const std::size_t n = part.vertex_count;
+    Knots knots;
+    const auto pose = [&](const Pose& at) {
+        knots.emplace_back(n);
+        pose_positions(*frame.scene, at, part.placement, knots.back());
+    };
+    if (segments == 0) {
+        pose(frame.middle);
+        return knots;
+    }
+    for (int k = 0; k <= segments; ++k) pose(poses.at(static_cast<double>(k) / segments));
+    const bool still = std::all_of(knots.begin(), knots.end(), [&](const auto& knot) { return knot == knots[0]; });
+    if (still) knots.resize(1);
+    return knots;
+}
+
+}  // namespace
+
+WorldMotion world_motion(const Frame& frame, const glm::dvec3& origin, bool frozen) {
+    WorldMotion world;
+    world.origin = origin;
+    world.parts = frame.parts;
+    int most = 1;
+    for (const Part& part : frame.parts) most = std::max(most, part.segments);
+    const bool open = !frozen && frame.view.shutter.close > frame.view.shutter.open;
+    std::vector<int> segments(frame.parts.size(), 0), needed;
+    if (open)
+        for (std::size_t i = 0; i < segments.size(); ++i) segments[i] = segments_of(frame, frame.parts[i], most);
+    for (const int n : segments)
+        if (n > 0) needed.push_back(n);
+    const Poses poses(frame, needed);
+
+    std::vector<Knots> knots(segments.size());
+    parallel_for(segments.size(),
+                 [&](std::size_t i) { knots[i] = pose_knots(frame, frame.parts[i], segments[i], poses); });
+    std::size_t points = 0;
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+        Part& part = world.parts[i];
+        part.first_point = static_cast<std::uint32_t>(points);
+        part.moves = knots[i].size() > 1;
+        part.segments = part.moves ? static_cast<int>(knots[i].size()) - 1 : 1;
+        world.moves = world.moves || part.moves;
+        points += knots[i].size() * part.vertex_count;
+    }
+    world.points.resize(points);
+    world.corners.resize(frame.corners.size());
+    parallel_for(segments.size(), [&](std::size_t i) {
+        const Part &part = world.parts[i], &was = frame.parts[i];
+        glm::vec3* out = world.points.data() + part.first_point;
+        for (const auto& knot : knots[i])
+            for (const glm::dvec3& p : knot) *out++ = glm::vec3(p - origin);
+        const std::size_t first = 3 * std::size_t{part.first_triangle}, count = 3 * std::size_t{part.triangle_count};
+        for (std::size_t c = first; c < first + count; ++c)
+            world.corners[c] = frame.corners[c] - was.first_point + part.first_point;
+        knots[i] = {};
+    });
+    return world;
+}
+
+}  // namespace pentaprism

@@ -1,0 +1,198 @@
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+#include <numbers>
+
+#include "sample/net.h"
+#include "shade/shadows.h"
+#include "small_scene.h"
+
+namespace pentaprism {
+namespace {
+
+using namespace small_scene;
+
+// A floor y = 0 of half width `size`, two triangles.
+Primitive floor_of(float size) {
+    Primitive floor = square(size, 0.0f, kNone);
+    for (glm::vec3& p : floor.positions) p = {p.x, 0.0f, -p.y};
+    floor.normals.assign(4, {0.0f, 1.0f, 0.0f});
+    return floor;
+}
+
+// Scene, frame and shadows of one light above a floor.
+struct Stage {
+    Scene scene = scene_with_camera();
+    RenderSettings settings;
+    Frame frame;
+    Lighting lighting;
+    std::unique_ptr<Shadows> shadows;
+
+    Stage() {
+        settings.image.width = settings.image.height = 64;
+        add_mesh(scene, {floor_of(20.0f)});
+    }
+    void add_sun(const glm::vec3& travels) {
+        lighting.lights.push_back(
+            {LightKind::kDirectional, {}, glm::normalize(travels), glm::vec3(1.0f), INFINITY, 1, 0});
+    }
+    void add_lamp(const glm::vec3& position) {
+        lighting.lights.push_back({LightKind::kPoint, position, {0, -1, 0}, glm::vec3(1.0f), INFINITY, 1, 0});
+    }
+    void move(Index node, const glm::vec3& from, const glm::vec3& to) {
+        // From shutter open to close: the shutter is 1/48 s around time 0.
+        Channel path;
+        path.node = node;
+        path.times = {-1.0f / 96.0f, 1.0f / 96.0f};
+        path.values = {from.x, from.y, from.z, to.x, to.y, to.z};
+        scene.nodes[node].transform.translation = 0.5f * (from + to);
+        scene.animations.push_back({"move", {path}, 1.0});
+    }
+    void finish(ShadowMode mode = ShadowMode::kMoving) {
+        frame = frame_of(scene, settings);
+        shadows = std::make_unique<Shadows>(frame, lighting, glm::dvec3(0.0), mode);
+    }
+    // Light at the point of the triangle, mean over many seeds in one quarter of the shutter or all of it.
+    double lit(std::uint32_t triangle, const glm::vec3& b, float texel, int quarter = -1, int seeds = 64) const {
+        const WorldMotion world = world_motion(frame, glm::dvec3(0.0), true);
+        glm::vec3 position(0.0f);
+        for (int i = 0; i < 3; ++i) position += b[i] * world.points[world.corners[3 * triangle + i]];
+        double sum = 0.0;
+        for (int s = 0; s < seeds; ++s) {
+            ShadowReceiver receiver;
+            receiver.triangle = triangle;
+            receiver.quarter = quarter < 0 ? s % 4 : quarter;
+            receiver.count = 1 + s / 4 % 4;
+            for (glm::vec3& point : receiver.points) point = b;
+            receiver.texel = texel;
+            sum += shadows->lit(0, receiver, position, mix(s));
+        }
+        return sum / seeds;
+    }
+    // The same at (x, z) of the floor, triangles 0 and 1.
+    double floor_lit(float x, float z, float texel, int quarter = -1) const {
+        const float u = (x + 20.0f) / 40.0f, v = (20.0f - z) / 40.0f;  // corners: (0,0) (1,0) (1,1) (0,1)
+        const bool first = u >= v;
+        return first ? lit(0, {1.0f - u, u - v, v}, texel, quarter) : lit(1, {1.0f - v, u, v - u}, texel, quarter);
+    }
+};
+
+Primitive lid(float size, float height) {
+    Primitive top = floor_of(size);
+    for (glm::vec3& p : top.positions) p.y = height;
+    return top;
+}
+
+TEST(Shadows, AFloorDoesNotShadowItselfAtAnyHeightOfTheSun) {
+    for (const double degrees : {2.0, 10.0, 30.0, 60.0, 80.0, 90.0}) {
+        Stage stage;
+        const double angle = degrees * std::numbers::pi / 180.0;
+        stage.add_sun({0.6f * static_cast<float>(std::cos(angle)), -static_cast<float>(std::sin(angle)),
+                       0.8f * static_cast<float>(std::cos(angle))});
+        stage.finish();
+        for (int i = 0; i < 40; ++i)
+            EXPECT_EQ(stage.floor_lit(-7.3f + 0.37f * i, 5.1f - 0.21f * i, 0.02f), 1.0) << degrees << " " << i;
+    }
+}
+
+TEST(Shadows, AShadowBeginsWhereItsCasterStandsAndEndsWhereItShould) {
+    Stage stage;
+    Primitive wall = square(1.0f, 0.0f, kNone);  // x in [-1, 1], y in [0, 2], at z = 0
+    for (glm::vec3& p : wall.positions) p.y += 1.0f;
+    add_mesh(stage.scene, {wall});
+    stage.add_sun({0.0f, -1.0f, 1.0f});  // 45 degrees, to +z
+    stage.finish();
+    const float texel = 0.01f;
+    EXPECT_EQ(stage.floor_lit(0.0f, -0.03f, texel), 1.0);
+    EXPECT_EQ(stage.floor_lit(0.0f, 0.03f, texel), 0.0);  // no gap under the wall
+    EXPECT_EQ(stage.floor_lit(0.0f, 1.97f, texel), 0.0);
+    EXPECT_EQ(stage.floor_lit(0.0f, 2.03f, texel), 1.0);
+    EXPECT_EQ(stage.floor_lit(0.97f, 1.0f, texel), 0.0);
+    EXPECT_EQ(stage.floor_lit(1.03f, 1.0f, texel), 1.0);
+}
+
+TEST(Shadows, TheShadowOfAMovingLidIsASlopeAndAFrozenOneIsAnEdge) {
+    const auto stage_of = [](ShadowMode mode) {
+        auto stage = std::make_unique<Stage>();
+        const Index lid_node = add_mesh(stage->scene, {lid(1.0f, 2.0f)});
+        stage->move(lid_node, {-1.0f, 0.0f, 0.0f}, {1.0f, 0.0f, 0.0f});
+        stage->add_sun({0.0f, -1.0f, 0.0f});
+        stage->finish(mode);
+        return stage;
+    };
+    const auto moving = stage_of(ShadowMode::kMoving), still = stage_of(ShadowMode::kStill);
+    // The lid covers [-2, 0] when the shutter opens and [0, 2] when it closes: x is dark for 1 - |x| / 2 of the time.
+    for (const float x : {-1.6f, -1.1f, -0.5f, -0.2f, 0.4f, 0.9f, 1.7f}) {
+        double mean = 0.0;
+        for (int i = 0; i < 25; ++i) mean += moving->floor_lit(x, -0.5f + 0.041f * static_cast<float>(i), 0.02f) / 25;
+        EXPECT_NEAR(mean, 0.5 * std::abs(x), 0.04) << x;
+        EXPECT_EQ(still->floor_lit(x, 0.1f, 0.02f), std::abs(x) < 1.0f ? 0.0 : 1.0) << x;
+    }
+}
+
+TEST(Shadows, AMapsTimesAreSpreadOverEachQuarterOfTheShutter) {
+    Stage stage;
+    const Index lid_node = add_mesh(stage.scene, {lid(1.0f, 2.0f)});
+    stage.move(lid_node, {-4.0f, 0.0f, 0.0f}, {4.0f, 0.0f, 0.0f});
+    stage.add_sun({0.0f, -1.0f, 0.0f});
+    stage.finish();
+    // In the second quarter the lid's middle goes from -2 to 0: x = -2.5 is dark in the first quarter of that, and
+    // neighbouring texels see different times of it.
+    double mean = 0.0, square = 0.0;
+    for (int i = 0; i < 400; ++i) {
+        const float z = -0.9f + 0.0045f * static_cast<float>(i);
+        const double here = stage.floor_lit(-2.5f, z, 0.002f, 1) / 400.0;
+        mean += here;
+        square += 400.0 * here * here;
+    }
+    EXPECT_NEAR(mean, 0.75, 0.04);
+    EXPECT_GT(square - mean * mean, 0.01);
+}
+
+TEST(Shadows, ASurfaceThatMovesFastDoesNotShadowItself) {
+    Stage stage;
+    Primitive step = lid(1.0f, 1.0f);
+    Primitive riser = square(1.0f, 0.0f, kNone);  // behind the lid's far edge and up
+    for (glm::vec3& p : riser.positions) p = {p.x, p.y + 2.0f, -1.0f};
+    const Index node = add_mesh(stage.scene, {step, riser});
+    stage.move(node, {-1.0f, 0.0f, 0.0f}, {1.0f, 0.0f, 0.0f});
+    stage.add_sun({0.2f, -1.0f, -0.5f});
+    stage.finish();
+    for (int i = 0; i < 50; ++i) {
+        const float u = 0.05f + 0.018f * static_cast<float>(i);
+        EXPECT_GT(stage.lit(2, {1.0f - u, 0.6f * u, 0.4f * u}, 0.01f), 0.99) << i;
+        EXPECT_GT(stage.lit(4, {1.0f - u, 0.6f * u, 0.4f * u}, 0.01f), 0.99) << i;
+    }
+}
+
+TEST(Shadows, APointLightShadowsInAllDirections) {
+    for (const glm::vec3& way : {glm::vec3(1, 0, 0), glm::vec3(-1, 0, 0), glm::vec3(0, 0, 1), glm::vec3(0, 0, -1),
+                                 glm::vec3(0.71f, 0, 0.7f), glm::vec3(-0.7f, 0, 0.71f), glm::vec3(0, 0, 0)}) {
+        Stage stage;
+        // A lid of half a metre halfway between the lamp, 2 m above the floor, and the floor 4 m away along `way`.
+        Primitive block = lid(0.25f, 1.0f);
+        for (glm::vec3& p : block.positions) p += 2.0f * way;
+        add_mesh(stage.scene, {block});
+        stage.add_lamp({0.0f, 2.0f, 0.0f});
+        stage.finish();
+        const glm::vec3 middle = 4.0f * way, aside = middle + glm::vec3(0.55f, 0.0f, 0.55f);
+        EXPECT_EQ(stage.floor_lit(middle.x, middle.z, 0.01f), 0.0) << way.x << " " << way.z;
+        EXPECT_EQ(stage.floor_lit(middle.x + 0.47f, middle.z, 0.01f), 0.0);
+        EXPECT_EQ(stage.floor_lit(middle.x + 0.53f, middle.z, 0.01f), 1.0);
+        EXPECT_EQ(stage.floor_lit(aside.x, aside.z, 0.01f), 1.0);
+    }
+}
+
+TEST(Shadows, TheSizeOfTexelsDoesNotMoveAShadow) {
+    Stage stage;
+    add_mesh(stage.scene, {lid(1.0f, 2.0f)});
+    stage.add_sun({0.3f, -1.0f, 0.1f});
+    stage.finish();
+    for (const float texel : {0.001f, 0.004f, 0.016f, 0.064f}) {
+        EXPECT_EQ(stage.floor_lit(0.6f + 0.9f, 0.2f, texel), 0.0) << texel;
+        EXPECT_EQ(stage.floor_lit(0.6f + 1.15f, 0.2f, texel), 1.0) << texel;
+    }
+}
+
+}  // namespace
+}  // namespace pentaprism
