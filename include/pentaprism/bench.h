@@ -18,22 +18,27 @@ struct BenchEffect {
     double motion = 0.0, defocus = 0.0;
 };
 
-/// still, motion, motion-x2, defocus, defocus-x2, both, both-x2.
+/// still, motion, motion-x2, defocus, defocus-x2, both, both-x2. Where a name is asked for, other factors up to 64 will
+/// do, too: both-x0.5, motion-x8.
 std::vector<BenchEffect> bench_effects();
 
-/// What is measured unless said otherwise: "auto", each of culling_tests() by itself, and the other ways to find what
-/// is visible: accumulation, interleaved, micropolygon and, if this build has it, raytrace.
+/// What can be measured: "auto", each of culling_tests() by itself, and the other ways to find what is visible:
+/// accumulation, interleaved, micropolygon and, if this build has it, raytrace.
 std::vector<std::string> bench_methods();
+
+/// What is measured unless said otherwise: all of them but micropolygon, which takes far longer than all others.
+std::vector<std::string> bench_default_methods();
 
 /// What to measure. A scene without a lens of its own gets f/2.8, one without a shutter half a frame.
 struct BenchPlan {
     std::vector<std::string> scenes;   ///< as load_scene() takes them; empty: bench_default_scenes()
-    std::vector<std::string> effects;  ///< names of bench_effects(); empty: all
-    std::vector<std::string> methods;  ///< of bench_methods(), and combinations of culling tests; empty: all
-    RenderSettings settings;           ///< image, method.seed, method.threads, animation; lens and shutter: see effects
-    double frame = -1.0;               ///< below 0: 24 of a built-in scene, 0 of a file
-    int runs = 5;                      ///< timed runs of each method, methods in turn; the median counts
-    double seconds = 4.0;  ///< a slower method gets fewer runs: as many as fit in these seconds, at least one
+    std::vector<std::string> effects;  ///< names of bench_effects(), or other factors; empty: all seven
+    std::vector<std::string>
+        methods;              ///< of bench_methods(), and combinations of culling tests; empty: the default ones
+    RenderSettings settings;  ///< image, method.seed, method.threads, animation; lens and shutter: see effects
+    double frame = -1.0;      ///< below 0: 24 of a built-in scene, 0 of a file
+    int runs = 5;             ///< timed runs of each method, methods in turn; the median counts
+    double seconds = 4.0;     ///< a slower method gets fewer runs: as many as fit in these seconds, at least one
     std::int64_t most_tests = 32'000'000;  ///< where the bounding box alone would need more exact tests, a part of the
                                            ///< picture's tiles is measured, the same with all methods; 0: no limit
     std::vector<int> peer_threads;  ///< Embree is timed with each of these numbers of threads (0: all); empty: not
@@ -50,21 +55,23 @@ std::vector<std::string> bench_default_scenes();
 /// One method on one frame. Times are wall times in milliseconds with all threads of the plan.
 struct BenchRow {
     std::string scene, effect, method, backend = "cpu";
-    bool conservative = true;  ///< the method promises to lose no sample
-    std::int64_t samples = 0;  ///< of the tiles that were measured (BenchCell::share)
-    std::int64_t tested = 0;   ///< exact 5D tests
-    std::int64_t covered = 0;  ///< of them accepted
+    bool conservative = true;     ///< the method promises to lose no sample
+    bool own_arithmetic = false;  ///< decides by other arithmetic than the exact test: differs at edges and depth ties
+    std::int64_t samples = 0;     ///< of the tiles that were measured (BenchCell::share)
+    std::int64_t tested = 0;      ///< exact 5D tests
+    std::int64_t covered = 0;     ///< of them accepted
     std::int64_t footprints =
         0;  ///< questions for all samples of a footprint: CullTest::prepare, which sets up the next
     std::int64_t kept_footprints = 0;  ///< of them answered by "may be hit"
     std::int64_t asked = 0;            ///< questions for single samples
-    std::int64_t false_culls = 0;      ///< samples whose triangle or depth differs, in any bit, from those of `none`
-    double setup_ms = 0.0;  ///< bounds, bins and all questions of the culling test, the exact tests left out; of
-                            ///< `auto`, whose questions depend on depths, bounds and bins alone
-    double test_ms = 0.0;   ///< the rest: exact tests, depth, opacity
-    double frame_ms = 0.0;  ///< visibility of the whole frame, from posed triangles to the hit of every sample
-    int runs = 0;           ///< timed runs behind the medians
-    double peak_mb = 0.0;   ///< largest resident memory while it ran, what the laboratory itself keeps not counted
+    std::int64_t false_culls = 0;  ///< samples whose triangle or depth differs, in any bit, from those of `none` on the
+                                   ///< same samples; with `own_arithmetic` whose triangle does
+    double setup_ms = 0.0;         ///< bounds, bins and all questions of the culling test, the exact tests left out; of
+                                   ///< `auto`, whose questions depend on depths, bounds and bins alone
+    double test_ms = 0.0;          ///< the rest: exact tests, depth, opacity
+    double frame_ms = 0.0;         ///< visibility of the whole frame, from posed triangles to the hit of every sample
+    int runs = 0;                  ///< timed runs behind the medians
+    double peak_mb = 0.0;  ///< largest resident memory while it ran, what the laboratory itself keeps not counted
 
     double ste() const { return tested > 0 ? static_cast<double>(covered) / static_cast<double>(tested) : 0.0; }
     double tests_per_covered() const {

@@ -29,8 +29,15 @@ struct FrameInfo {
     double focal_length_mm = 0.0;
     std::array<double, 16> world_to_camera{};  ///< column-major, at mid-shutter; camera looks along -z
     std::array<double, 16> world_to_ndc{};     ///< column-major, at mid-shutter; NDC in [-1,1], y up
+    double fx = 0.0, fy = 0.0;                 ///< pixels: focal length (perspective) or pixels a metre (orthographic)
     std::string camera;
     int max_motion_segments = 1;
+    /// The camera at the shutter knots k / max_motion_segments: seconds, and world to camera as world_to_camera.
+    struct Knot {
+        double time = 0.0;
+        std::array<double, 16> world_to_camera{};
+    };
+    std::vector<Knot> knots;
     std::vector<Aov> aovs;                                        ///< what PixelRows::aovs holds, in this order
     std::vector<std::pair<std::string, std::string>> attributes;  ///< for the header of a file: names of ids
 };
@@ -58,6 +65,7 @@ class RowSink {
 /// the frame: render_frame throws Error(kRender) "interrupted".
 using Progress = std::function<bool(double done)>;
 
+class Environment;
 class Textures;
 
 /// Renders frames of one scene and keeps between them what does not change, such as filtered textures.
@@ -74,6 +82,8 @@ class Renderer {
   private:
     const Scene& scene_;
     std::shared_ptr<const Textures> textures_;
+    std::shared_ptr<const Environment> environment_;
+    std::string environment_name_;
 };
 
 /// Renders frame number `frame` into `sink`. Throws Error. The same input gives the same pixels, bit for bit, for any

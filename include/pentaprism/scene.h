@@ -62,6 +62,24 @@ struct Material {
     float alpha_cutoff = 0.5f;  ///< kMask only
     bool double_sided = false;
     bool unlit = false;
+
+    float ior = 1.5f;                   ///< KHR_materials_ior; 0: reflects all
+    float specular = 1.0f;              ///< KHR_materials_specular: strength of a dielectric's reflection
+    TextureRef specular_texture;        ///< in A
+    glm::vec3 specular_color{1.0f};     ///< of a dielectric's reflection at normal incidence
+    TextureRef specular_color_texture;  ///< sRGB
+    float clearcoat = 0.0f;             ///< KHR_materials_clearcoat: share of the surface that is varnished
+    float clearcoat_roughness = 0.0f;
+    TextureRef clearcoat_texture;            ///< in R
+    TextureRef clearcoat_roughness_texture;  ///< in G
+    TextureRef clearcoat_normal_texture;     ///< kNone: the coat is smooth, whatever the normal texture says
+    float clearcoat_normal_scale = 1.0f;
+    glm::vec3 sheen_color{0.0f};     ///< KHR_materials_sheen: light that fibres throw at grazing angles
+    TextureRef sheen_color_texture;  ///< sRGB
+    float sheen_roughness = 0.0f;
+    TextureRef sheen_roughness_texture;  ///< in A
+    float transmission = 0.0f;           ///< KHR_materials_transmission: share of light that passes a thin surface
+    TextureRef transmission_texture;     ///< in R
 };
 
 /// Displacements of one morph target: each vector is empty or has one entry for each vertex.

@@ -26,6 +26,11 @@ enum class Aov : std::uint8_t {
     kCoverage,
     kVariance
 };
+/// kGltf: Lambert under GGX, energy-conserving. kBurley: Burley's diffuse lobe (2012) and no compensation, which is
+/// what Blender's renderer had until 4.0; for comparisons with it.
+enum class BrdfModel : std::uint8_t { kGltf, kBurley };
+/// What of a texture a shading point stands for: a point; its pixel; its pixel, motion and lens.
+enum class TextureFilter : std::uint8_t { kOff, kPixel, kFull };
 enum class ShadowMode : std::uint8_t { kOff, kStill, kMoving };
 enum class ShutterPosition : std::uint8_t { kStart, kCenter, kEnd };
 /// The edge of the picture that is exposed first; kNone: all of it at once.
@@ -46,6 +51,8 @@ struct ImageSettings {
     ToneMap tonemap = ToneMap::kAces;        ///< PNG only
     std::optional<std::array<float, 3>> background;  ///< linear; unset: the scene's, else black
     std::vector<Aov> aovs;                           ///< outputs beside the colour, each at most once
+    std::string environment;  ///< instead: "sky", or a .hdr or .exr picture (latitude-longitude, up is up) that lights
+                              ///< the scene, too
 };
 
 /// An unset value comes from the scene's camera (LensInfo), else from the default in the comment.
@@ -93,7 +100,9 @@ struct MethodSettings {
     VisibilityMethod visibility = VisibilityMethod::kStochastic;
     /// "auto" or a combination of culling_tests(); kRaytrace and kMicropolygon have no use for one: "auto" alone.
     std::string culling = "auto";
-    std::string shading = "pixel";             ///< how often visible surfaces are shaded
+    std::string shading = "pixel";  ///< how often visible surfaces are shaded
+    TextureFilter texture_filter = TextureFilter::kFull;
+    BrdfModel brdf = BrdfModel::kGltf;
     ShadowMode shadows = ShadowMode::kMoving;  ///< kStill: of everything as it is at mid-shutter
     std::uint32_t seed = 0;                    ///< of the sample pattern
     int threads = 0;                           ///< 0: all processors

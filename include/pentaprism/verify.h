@@ -16,8 +16,8 @@ struct VerifyReport {
     std::int64_t ours_wrong = 0;      ///< disagreements in which double precision is against us
     std::int64_t away_from_edge = 0;  ///< of them: over 1e-2 pixel from the nearest edge of each triangle concerned,
                                       ///< and depths that differ by over 1e-5 relative
-    std::int64_t depth_ties = 0;  ///< disagreements on which of two surfaces is nearer that lie within 1e-6 of each
-                                  ///< other (relative, in double), such as coplanar ones; not in ours_wrong
+    std::int64_t depth_ties = 0;      ///< disagreements on which of two surfaces is nearer that lie within 1e-6 of each
+                                      ///< other (relative, in double), such as coplanar ones; not in ours_wrong
     double worst_margin = 0.0;  ///< largest such distance in pixels among ours_wrong whose depths differ so: over 1e-2
                                 ///< exactly when away_from_edge is not 0
     double worst_depth_error = 0.0;        ///< largest relative depth error where both agree on the triangle

@@ -98,11 +98,12 @@ HWY_INLINE Vec facing_of(F f, const Points P[3][2], bool still, const Limits& li
     const Vec tau = hn::Mul(hn::Mul(hn::MulAdd(sixteen, size_w, size_x), hn::MulAdd(sixteen, size_w, size_y)),
                             hn::Mul(size_w, hn::Set(f, 96.0f * kUnitRoundoff)));
     const Vec zero = hn::Zero(f);
-    Mask front = hn::Eq(zero, zero), back = front;
+    Mask front = hn::Gt(tau, hn::Set(f, 1e-30f)), back = front;  // not where products underflow
     for (int j = 0; j < (still ? 1 : 4); ++j) {
         const Vec slack = j == 1 || j == 2 ? hn::Mul(tau, hn::Set(f, 3.0f)) : tau;
-        const Vec rho_y = hn::Mul(ratio, dv[j]);
-        const Vec rho = hn::Mul(hn::Sqrt(hn::MulAdd(du[j], du[j], hn::Mul(rho_y, rho_y))), hn::Set(f, 1.0001f));
+        // hypot(a, b) <= max + (sqrt 2 - 1) min; squares of small numbers would vanish.
+        const Vec rho_x = hn::Abs(du[j]), rho_y = hn::Mul(ratio, hn::Abs(dv[j]));
+        const Vec rho = hn::MulAdd(hn::Set(f, 0.4143f), hn::Min(rho_x, rho_y), hn::Max(rho_x, rho_y));
         front = hn::And(front, hn::Gt(hn::Sub(d0[j], rho), slack));
         back = hn::And(back, hn::Lt(hn::Add(d0[j], rho), hn::Neg(slack)));
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <pentaprism/aov.h>
@@ -138,6 +139,8 @@ void check(const MethodSettings& method) {
         refuse(fmt::format("--culling {}: --visibility {} has no use for it; leave one of them out", method.culling,
                            name_of(method.visibility)));
     }
+    if (method.shading != "pixel" && method.shading != "sample" && method.shading != "decoupled")
+        refuse(fmt::format("--shading: '{}' is not pixel, sample or decoupled", method.shading));
     check_whole("--threads", method.threads, 0, 1024);
     if (method.tile_size != 8 && method.tile_size != 16 && method.tile_size != 32) {
         refuse(fmt::format("tile size: {} is not 8, 16 or 32", method.tile_size));
@@ -221,6 +224,10 @@ void put(Json& json, const char* key, const std::string& value) {
     if (!value.empty()) json[key] = value;
 }
 
+std::string file_name(const std::string& path) {
+    return std::filesystem::path(path).filename().string();
+}
+
 }  // namespace
 
 void validate(const RenderSettings& settings) {
@@ -250,6 +257,7 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
     json["tonemap"] = name_of(image.tonemap);
     put(json, "background", image.background);
     for (const Aov aov : image.aovs) json["aovs"].push_back(aov_info(aov).name);
+    put(json, "environment", file_name(image.environment));
     put(json, "camera", camera.camera);
     put(json, "focal_length_mm", camera.focal_length_mm);
     put(json, "sensor_width_mm", camera.sensor_width_mm);
@@ -274,6 +282,10 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
     json["animation"] = animation.animation;
     json["visibility"] = name_of(method.visibility);
     json["shading"] = method.shading;
+    json["texture_filter"] = method.texture_filter == TextureFilter::kOff     ? "off"
+                             : method.texture_filter == TextureFilter::kPixel ? "pixel"
+                                                                              : "full";
+    json["brdf"] = method.brdf == BrdfModel::kBurley ? "burley" : "gltf";
     json["shadows"] = name_of(method.shadows);
     json["seed"] = method.seed;
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -123,11 +123,14 @@ void add_what(CLI::App& command, BenchCommand& bench) {
     std::string effects, methods;
     for (const BenchEffect& effect : bench_effects()) effects += (effects.empty() ? "" : ", ") + effect.name;
     for (const std::string& method : bench_methods()) methods += (methods.empty() ? "" : ", ") + method;
-    add_value(command, group, "--effects", "LIST", "Amounts of blur, with commas (default all): " + effects,
+    add_value(command, group, "--effects", "LIST",
+              "Amounts of blur, with commas; also by other factors, such as both-x8 (default all): " + effects,
               [&](const std::string& text) { bench.effects = split("--effects", text); });
-    add_value(command, group, "--methods", "LIST",
-              "Values of render --culling, combinations, too, with commas (default: " + methods + ")",
-              [&](const std::string& text) { bench.methods = split("--methods", text); });
+    add_value(
+        command, group, "--methods", "LIST",
+        "Values of render --culling or --visibility, and combinations, with commas (default all but micropolygon): " +
+            methods,
+        [&](const std::string& text) { bench.methods = split("--methods", text); });
     add_value(command, group, "--peer", "embree", "Time visibility against this ray tracer, too",
               [&](const std::string& text) {
                   bench.embree = parse_choice<bool>("--peer", text, {{"embree", true}});

@@ -67,10 +67,13 @@ void add_image_options(CLI::App& command, ImageSettings& image) {
                       "--tonemap", text,
                       {{"none", ToneMap::kNone}, {"aces", ToneMap::kAces}, {"filmic", ToneMap::kFilmic}});
               });
-    add_value(command, group, "--background", "R,G,B",
-              "Linear colour behind the scene (default: the scene's, else 0,0,0)", [&](const std::string& text) {
-                  if (ends_with(text, ".hdr") || ends_with(text, ".exr")) {
-                      refuse_as_planned("--background with an environment picture");
+    add_value(command, group, "--background", "R,G,B|FILE|sky",
+              "Linear colour behind the scene (default: the scene's, else 0,0,0), or what surrounds and lights it: a "
+              "latitude-longitude picture, .hdr or .exr, or the built-in sky",
+              [&](const std::string& text) {
+                  if (text == "sky" || ends_with(text, ".hdr") || ends_with(text, ".exr")) {
+                      image.environment = text;
+                      return;
                   }
                   const auto values = parse_numbers("--background", text, 3, "R,G,B");
                   image.background = {static_cast<float>(values[0]), static_cast<float>(values[1]),
@@ -205,8 +208,23 @@ void add_method_options(CLI::App& command, MethodSettings& method) {
                                                       {"micropolygon", VisibilityMethod::kMicropolygon}});
               });
     add_partly_built(command, group, "--backend", "What computes", "cpu", {"gl"});
-    add_partly_built(command, group, "--shading", "How often visible surfaces are shaded", "pixel",
-                     {"sample", "decoupled"});
+    add_value(command, group, "--shading", "pixel|sample|decoupled",
+              "How often visible surfaces are shaded (default pixel)", [&](const std::string& text) {
+                  method.shading = parse_choice<std::string>(
+                      "--shading", text, {{"pixel", "pixel"}, {"sample", "sample"}, {"decoupled", "decoupled"}});
+              });
+    add_value(command, group, "--texture-filter", "off|pixel|full",
+              "What a texture is averaged over: nothing, the pixel, or pixel, motion and lens (default full)",
+              [&](const std::string& text) {
+                  method.texture_filter = parse_choice<TextureFilter>(
+                      "--texture-filter", text,
+                      {{"off", TextureFilter::kOff}, {"pixel", TextureFilter::kPixel}, {"full", TextureFilter::kFull}});
+              });
+    add_value(command, group, "--brdf", "gltf|burley", "Model of surfaces (default gltf; burley as older Blender)",
+              [&](const std::string& text) {
+                  method.brdf = parse_choice<BrdfModel>("--brdf", text,
+                                                        {{"gltf", BrdfModel::kGltf}, {"burley", BrdfModel::kBurley}});
+              });
     add_value(command, group, "--shadows", "off|still|moving",
               "Shadows: none, of mid-shutter, or at each time of the shutter (default moving)",
               [&](const std::string& text) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "bound/screen_bounds.h"
+
 namespace pentaprism {
 namespace {
 
@@ -90,7 +92,7 @@ void Dicer::dice(const LocalTriangle& T, const LocalBox& window,
     while (!stack.empty()) {
         const Cut cut = stack.back();
         stack.pop_back();
-        Micropolygon micro{piece_of(T, cut), {}};
+        Micropolygon micro{piece_of(T, cut), {}, 0.0f};
         const MovingTriangle m = moving(micro.piece);
         const ScreenBox box = screen_bounds(m, T.w_near, ratio_);
         if (!(box.x0 <= window.x1 && box.x1 >= window.x0 && box.y0 <= window.y1 && box.y1 >= window.y0)) continue;
@@ -106,6 +108,7 @@ void Dicer::dice(const LocalTriangle& T, const LocalBox& window,
             continue;
         }
         micro.box = {rounded_down(box.x0), rounded_up(box.x1), rounded_down(box.y0), rounded_up(box.y1)};
+        micro.nearest_w = rounded_down(box.nearest_w);
         if (cut.level > 0) {
             micro.piece.behind = behind;
             micro.piece.box[0] = rounded_down(box.x0 + centre_.x), micro.piece.box[1] = rounded_up(box.x1 + centre_.x);

@@ -8,21 +8,17 @@
 
 #include <functional>
 
+#include "bound/local_bounds.h"
 #include "bound/local_triangle.h"
-#include "bound/screen_bounds.h"
 
 namespace pentaprism {
-
-/// Closed rectangle in pixels from the cell's middle, y up.
-struct LocalBox {
-    float x0, x1, y0, y1;
-};
 
 /// A piece of a triangle. Its corners move on straight lines as the triangle's do; facing, depth range and number are
 /// those of the triangle.
 struct Micropolygon {
     LocalTriangle piece;
-    LocalBox box;  ///< holds every sample that hits the piece
+    LocalBox box;            ///< holds every sample that hits the piece
+    float nearest_w = 0.0f;  ///< no sample sees the piece at a smaller w
 };
 
 class Dicer {

@@ -92,8 +92,10 @@ HWY_INLINE HalfPlanes half_planes(const LocalTriangle& T, float ratio) {
     const hn::CappedTag<float, HalfPlanes::kPadded> d;
     using V = hn::Vec<decltype(d)>;
     for (int first = 0; first < HalfPlanes::kPadded; first += static_cast<int>(hn::Lanes(d))) {
-        const V nx = hn::Load(d, H.nx + first), ny = hn::Load(d, H.ny + first), r = hn::Set(d, ratio);
-        const V lens = hn::Sqrt(hn::MulAdd(hn::Mul(ny, ny), hn::Mul(r, r), hn::Mul(nx, nx)));  // L
+        const V nx = hn::Load(d, H.nx + first), ny = hn::Load(d, H.ny + first);
+        const V anx = hn::Abs(nx), any = hn::Abs(ny), rny = hn::Mul(any, hn::Set(d, ratio));
+        // L: hypot(a, b) <= max + (sqrt 2 - 1) min; squares of small numbers would vanish.
+        const V lens = hn::MulAdd(hn::Set(d, 0.4143f), hn::Min(anx, rny), hn::Max(anx, rny));
         V at[3][2], k = hn::Zero(d);
         for (int end = 0; end < 2; ++end) {
             V most = hn::Set(d, -INFINITY), k_most = hn::Zero(d);
@@ -119,12 +121,12 @@ HWY_INLINE HalfPlanes half_planes(const LocalTriangle& T, float ratio) {
         }
         const V segments = hn::Set(d, T.segments), segment = hn::Set(d, T.segment);
         const V change = hn::Sub(support[1], support[0]), e = hn::Mul(change, segments);
-        const V anx = hn::Abs(nx), any = hn::Abs(ny);
         V size = hn::Add(hn::Add(hn::Abs(support[0]), hn::Abs(support[1])), hn::Abs(e));
         size = hn::Add(size, hn::MulAdd(lens, hn::Abs(k), hn::Mul(hn::Set(d, 32.0f), hn::Add(anx, any))));
         V f = hn::Add(hn::NegMulAdd(change, segment, support[0]), bend);
         f = hn::MulAdd(anx, hn::Set(d, S.slack_x), hn::MulAdd(any, hn::Set(d, S.slack_y), f));
         f = hn::MulAdd(size, hn::Set(d, 16.0f * kUnitRoundoff), f);
+        f = hn::Add(f, hn::Set(d, 1e-35f));  // an edge so short that products underflow refuses nothing
         hn::Store(hn::Mul(k, nx), d, H.ku + first);
         hn::Store(hn::Mul(k, ny), d, H.kv + first);
         hn::Store(e, d, H.e + first);

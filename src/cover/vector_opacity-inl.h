@@ -105,10 +105,30 @@ HWY_NOINLINE Mask exceeds_threshold(F f, const TileState& state, std::uint32_t t
     return hn::And(ask, hn::Gt(alpha, hn::Load(f, threshold)));  // thresholds are in [0, 1): 0 and 1 need no asking
 }
 
+// Glass is rare: lane by lane.
+HWY_NOINLINE Mask decide_glass(F f, const TileState& state, std::uint32_t triangle, const Vec b[3], int lane, Job job,
+                               Mask hit) {
+    HWY_ALIGN float barycentrics[3][kLanes];
+    HWY_ALIGN float there[kLanes] = {};
+    for (int i = 0; i < 3; ++i) hn::Store(b[i], f, barycentrics[i]);
+    const int block = static_cast<int>(job) % kBlocksPerCell, slot = static_cast<int>(job) / kBlocksPerCell;
+    const int bx = state.work.tile.cell_x() * kCellBlocks + block % kCellBlocks,
+              by = state.work.tile.cell_y() * kCellBlocks + block / kCellBlocks;
+    const std::uint16_t* indices = &state.work.samples.indices(bx, by)[static_cast<std::size_t>(slot) * kLanes + lane];
+    for (std::uint64_t m = bits_of(f, hit); m != 0; m &= m - 1) {
+        const int k = std::countr_zero(m);
+        const int px = bx * kBlockSize + (lane + k) % kBlockSize, py = by * kBlockSize + (lane + k) / kBlockSize;
+        const float at[3] = {barycentrics[0][k], barycentrics[1][k], barycentrics[2][k]};
+        there[k] = is_opaque_at(state.work.frame, triangle, at, px, py, indices[k], state.work.samples.spp()) ? 1 : 0;
+    }
+    return hn::And(hit, hn::Gt(hn::Load(f, there), hn::Zero(f)));
+}
+
 // The lanes of `hit` whose surface is really there. `edges`, `sum`: barycentric coordinates times their sum.
 HWY_NOINLINE Mask decide_opacity(F f, const TileState& state, const LocalTriangle& T, const OpacityTerms& terms,
                                  const Vec edges[3], Vec sum, int lane, Job job, Mask hit) {
     const Vec b[3] = {hn::Div(edges[0], sum), hn::Div(edges[1], sum), hn::Div(edges[2], sum)};
+    if (terms.glass) return decide_glass(f, state, T.triangle, b, lane, job, hit);
     Vec alpha = hn::Set(f, terms.factor);
     if (terms.colored) alpha = hn::Mul(alpha, mixed(f, b, terms.color[0], terms.color[1], terms.color[2]));
     if (terms.texture == nullptr) {

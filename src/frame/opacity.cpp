@@ -53,6 +53,16 @@ float texture_alpha(const Frame& frame, const Primitive& primitive, const Textur
                           transform_uv(ref, b[0] * uv[vertices[0]] + b[1] * uv[vertices[1]] + b[2] * uv[vertices[2]]));
 }
 
+float transmission(const Frame& frame, const Material& material, const Primitive& primitive,
+                   const std::array<std::uint32_t, 3>& vertices, const float b[3]) {
+    const TextureRef& ref = material.transmission_texture;
+    const Pyramid* pyramid = frame.textures ? frame.textures->data(ref) : nullptr;
+    const std::vector<glm::vec2>& uv = primitive.texcoords[ref.texcoord == 1 ? 1 : 0];
+    if (!pyramid || uv.empty()) return material.transmission;
+    const glm::vec2 at = b[0] * uv[vertices[0]] + b[1] * uv[vertices[1]] + b[2] * uv[vertices[2]];
+    return material.transmission * pyramid->sample(ref, transform_uv(ref, at), 0.0f).x;
+}
+
 }  // namespace
 
 // Stratified over the pixel's samples, independent between triangles: two layers, also of one mesh, must not hide
@@ -70,8 +80,10 @@ float opacity_threshold(std::uint32_t triangle, int px, int py, int sample_index
 OpacityTerms opacity_terms(const Frame& frame, std::uint32_t triangle) {
     OpacityTerms terms;
     const Part& part = frame.parts[frame.part_of[triangle]];
-    if (part.alpha_mode == AlphaMode::kOpaque || part.material == kNone) return terms;
+    if (part.material == kNone) return terms;
     const Material& material = frame.scene->materials[part.material];
+    terms.glass = material.transmission > 0.0f;
+    if (part.alpha_mode == AlphaMode::kOpaque || terms.glass) return terms;
     const Primitive& primitive = frame.scene->meshes[part.placement.mesh].primitives[part.placement.primitive];
     const std::array<std::uint32_t, 3> vertices = frame.vertices(triangle);
     terms.mode = part.alpha_mode;
@@ -95,8 +107,10 @@ OpacityTerms opacity_terms(const Frame& frame, std::uint32_t triangle) {
 
 OpacityClass opacity_class(const Frame& frame, std::uint32_t triangle) {
     const Part& part = frame.parts[frame.part_of[triangle]];
-    if (part.alpha_mode == AlphaMode::kOpaque || part.material == kNone) return OpacityClass::kSolid;
-    if (!frame.textures) return OpacityClass::kMixed;
+    if (part.material == kNone) return OpacityClass::kSolid;
+    const bool glass = frame.scene->materials[part.material].transmission > 0.0f;
+    if (part.alpha_mode == AlphaMode::kOpaque) return glass ? OpacityClass::kMixed : OpacityClass::kSolid;
+    if (!frame.textures || glass) return OpacityClass::kMixed;
     const OpacityClass* classes = frame.textures->opacity_classes(part.placement.mesh, part.placement.primitive);
     return classes ? classes[triangle - part.first_triangle] : OpacityClass::kMixed;
 }
@@ -111,8 +125,13 @@ bool is_opaque_at(const Frame& frame, std::uint32_t triangle, const float baryce
     const std::array<std::uint32_t, 3> vertices = frame.vertices(triangle);
     const float alpha = material.base_color.w * vertex_alpha(primitive, vertices, barycentrics) *
                         texture_alpha(frame, primitive, material.base_color_texture, vertices, barycentrics);
-    if (part.alpha_mode == AlphaMode::kMask) return alpha >= material.alpha_cutoff;
-    return alpha > opacity_threshold(triangle, px, py, sample_index, spp);
+    if (part.alpha_mode == AlphaMode::kMask && !(alpha >= material.alpha_cutoff)) return false;
+    float opacity = part.alpha_mode == AlphaMode::kBlend ? alpha : 1.0f;
+    if (material.transmission > 0.0f)
+        opacity *= 1.0f - see_through(transmission(frame, material, primitive, vertices, barycentrics));
+    else if (part.alpha_mode == AlphaMode::kMask)
+        return true;
+    return opacity > opacity_threshold(triangle, px, py, sample_index, spp);
 }
 
 }  // namespace pentaprism

@@ -10,9 +10,9 @@
 namespace pentaprism {
 
 /// MASK: bilinear alpha of mip 0 at the sample's own barycentrics, times factor and vertex colour, reaches the cutoff.
-/// BLEND: stochastic transparency (Enderton, Sintorn, Shirley, Luebke 2010): alpha exceeds a threshold that is a hash
-/// of (triangle, pixel, sample index), stratified over the samples of the pixel (Laine & Karras 2011). OPAQUE: true.
-/// Thread-safe; no allocation.
+/// Surfaces that let light through: as blended ones, see_through(). BLEND: stochastic transparency (Enderton, Sintorn,
+/// Shirley, Luebke 2010): alpha exceeds a threshold that is a hash of (triangle, pixel, sample index), stratified over
+/// the samples of the pixel (Laine & Karras 2011). OPAQUE: true. Thread-safe; no allocation.
 bool is_opaque_at(const Frame& frame, std::uint32_t triangle, const float barycentrics[3], int px, int py,
                   int sample_index, int spp);
 
@@ -27,11 +27,18 @@ struct OpacityTerms {
     const TextureRef* ref = nullptr;      ///< of `texture`
     glm::vec2 uv[3] = {};
     float texture_alpha = 1.0f;
+    bool glass = false;  ///< light comes through as well: ask is_opaque_at()
 };
 OpacityTerms opacity_terms(const Frame& frame, std::uint32_t triangle);
 
 /// What alpha must exceed at a sample of a blended triangle; in [0, 1).
 float opacity_threshold(std::uint32_t triangle, int px, int py, int sample_index, int spp);
+
+/// Share of samples that see through a thin surface of this transmission (KHR_materials_transmission): as stochastic
+/// transparency, less than all, so that some samples are left to show what it reflects. Shading scales that up.
+inline float see_through(float transmission) {
+    return 0.875f * transmission;
+}
 
 /// kSolid promises that is_opaque_at() is true at every point of the triangle, kClear that it is false.
 OpacityClass opacity_class(const Frame& frame, std::uint32_t triangle);

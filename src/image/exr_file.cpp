@@ -7,7 +7,6 @@
 #include <ImfFrameBuffer.h>
 #include <ImfFramesPerSecond.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
@@ -28,6 +27,7 @@
 #include <pentaprism/error.h>
 
 #include "base/parallel.h"
+#include "image/exr_stream.h"
 #include "image/part_file.h"
 #include "image/writers.h"
 
@@ -110,17 +110,6 @@ std::vector<Imf::Header> make_part_headers(const FrameInfo& info, const FileMeta
     }
     return headers;
 }
-
-class PartStream : public Imf::OStream {
-  public:
-    explicit PartStream(PartFile& file) : OStream(file.name().c_str()), file_(file) {}
-    void write(const char bytes[], int count) override { file_.write(bytes, static_cast<std::size_t>(count)); }
-    uint64_t tellp() override { return file_.position(); }
-    void seekp(uint64_t position) override { file_.seek(position); }
-
-  private:
-    PartFile& file_;
-};
 
 class ExrWriter : public PictureWriter {
   public:

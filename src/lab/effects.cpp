@@ -3,6 +3,10 @@
 
 #include "lab/effects.h"
 
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <fmt/format.h>
 #include <pentaprism/error.h>
 
 #include "camera/view.h"
@@ -11,6 +15,7 @@ namespace pentaprism {
 namespace {
 
 constexpr double kDefaultFstop = 2.8;
+constexpr double kLargestFactor = 64.0;
 constexpr double kDefaultSlope =
     0.005;  // lens radius over focus distance where there is no f-number: orthographic cameras
 
@@ -32,8 +37,19 @@ BenchEffect find_effect(const std::string& name) {
     for (const BenchEffect& effect : bench_effects()) {
         if (effect.name == name) return effect;
         names += (names.empty() ? "" : ", ") + effect.name;
+        // motion-x8 and the like
+        const std::string prefix = effect.name + "-x";
+        const bool is_whole = std::max(effect.motion, effect.defocus) == 1.0;
+        const std::size_t digits = prefix.size();
+        if (!is_whole || name.rfind(prefix, 0) != 0 || name.size() <= digits || !std::isdigit(name[digits])) continue;
+        char* end = nullptr;
+        const double factor = std::strtod(name.c_str() + digits, &end);
+        if (*end == '\0' && factor > 0.0 && factor <= kLargestFactor)
+            return {name, effect.motion * factor, effect.defocus * factor};
     }
-    throw Error(ErrorKind::kUsage, "there is no effect '" + name + "'; there are: " + names);
+    throw Error(ErrorKind::kUsage,
+                fmt::format("there is no effect '{}'; there are: {}, and others by factors up to {:g}, such as both-x8",
+                            name, names, kLargestFactor));
 }
 
 BenchScene describe_scene(const Scene& scene, const RenderSettings& settings, double frame) {

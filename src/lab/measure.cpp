@@ -26,8 +26,7 @@ BenchRow counted_row(FrameWalk& walk, const std::string& method) {
     row.method = method;
     const MethodSettings settings = settings_of(method, {});
     row.conservative = settings.culling == "auto" || is_conservative(parse_culling(settings.culling));
-    row.own_arithmetic =
-        settings.visibility == VisibilityMethod::kMicropolygon || settings.visibility == VisibilityMethod::kRaytrace;
+    row.own_arithmetic = has_own_arithmetic(method);
     row.samples = walk.samples();
     row.tested = counts.cover.tested;
     row.covered = counts.cover.covered;

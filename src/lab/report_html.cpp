@@ -85,8 +85,8 @@ std::string method_label(const Lookup& lookup, const std::string& method) {
 }
 
 std::string image_tag(const BenchImage& image, const std::string& alt) {
-    return fmt::format("<img loading=\"lazy\" width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">",
-                       image.width, image.height, escape_html(alt), base64(image.png));
+    return fmt::format("<img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">", image.width,
+                       image.height, escape_html(alt), base64(image.png));
 }
 
 // ---- head of the page ----
@@ -156,14 +156,24 @@ std::string both_pixels(const BenchCell& cell) {
 
 // One way from no blur to much.
 struct Path {
-    const char *title, *x_title;
-    const char* effects[3];
+    const char *title, *x_title, *kind;
     std::string (*pixels)(const BenchCell&);
 };
-constexpr Path kPaths[] = {
-    {"Motion blur", "motion over the open shutter, in the mean", {"still", "motion", "motion-x2"}, motion_pixels},
-    {"Defocus blur", "radius of the circle of confusion, in the mean", {"still", "defocus", "defocus-x2"}, blur_pixels},
-    {"Both", "motion, radius", {"still", "both", "both-x2"}, both_pixels}};
+constexpr Path kPaths[] = {{"Motion blur", "motion over the open shutter, in the mean", "motion", motion_pixels},
+                           {"Defocus blur", "radius of the circle of confusion, in the mean", "defocus", blur_pixels},
+                           {"Both", "motion, radius", "both", both_pixels}};
+
+// The effects of a path that were measured, by their factor.
+std::vector<std::pair<double, std::string>> effects_of(const Path& path, const Lookup& lookup) {
+    std::vector<std::pair<double, std::string>> effects;
+    for (const std::string& name : lookup.effects)
+        if (name == "still" || name == path.kind || name.rfind(path.kind + std::string("-x"), 0) == 0) {
+            const BenchEffect effect = find_effect(name);
+            effects.emplace_back(std::max(effect.motion, effect.defocus), name);
+        }
+    std::sort(effects.begin(), effects.end());
+    return effects;
+}
 
 // From the decade below the least to the decade above the largest, in steps of 1 and 3.
 void fit(Plot& plot, double least, double largest) {
@@ -191,26 +201,28 @@ std::string plots(const BenchScene& scene, const Lookup& lookup, const std::stri
             }
     if (largest == 0.0) return "";
     std::string out = "<div class=\"panels\">\n";
-    const auto pixels = [&](const Path& path, const char* effect) {
-        const BenchCell* cell = lookup.cell(scene.name, effect);
-        return cell ? ": " + path.pixels(*cell) : std::string();
-    };
     for (const Path& path : kPaths) {
+        const auto effects = effects_of(path, lookup);
         Plot plot;
         plot.title = path.title;
         plot.y_title = y_title;
         plot.y_unit = unit;
         plot.x_title = path.x_title;
-        plot.x_ticks = {
-            {0, "none"}, {1, "x1" + pixels(path, path.effects[1])}, {2, "x2" + pixels(path, path.effects[2])}};
+        for (std::size_t i = 0; i < effects.size(); ++i) {
+            const BenchCell* cell = lookup.cell(scene.name, effects[i].second);
+            const std::string label = effects[i].first == 0.0 ? "none" : fmt::format("x{:g}", effects[i].first);
+            // Pixels are told where there is room for them.
+            const bool room = cell != nullptr && effects[i].first > 0.0 && effects.size() < 4;
+            plot.x_ticks.push_back({static_cast<double>(i), label + (room ? ": " + path.pixels(*cell) : "")});
+        }
         fit(plot, least, largest);
         int measured = 0;
         for (const std::string& method : lookup.methods) {
             PlotSeries series{lookup.style(method), {}};
-            for (int i = 0; i < 3; ++i)
-                if (const BenchRow* row = lookup.row(scene.name, path.effects[i], method); row && value(*row) > 0.0)
+            for (std::size_t i = 0; i < effects.size(); ++i)
+                if (const BenchRow* row = lookup.row(scene.name, effects[i].second, method); row && value(*row) > 0.0)
                     series.points.push_back({static_cast<double>(i), value(*row),
-                                             fmt::format("{}, {}: STE {} %, {} ms", method, path.effects[i],
+                                             fmt::format("{}, {}: STE {} %, {} ms", method, effects[i].second,
                                                          percent(row->ste()), milliseconds(row->frame_ms))});
             measured = std::max(measured, static_cast<int>(series.points.size()));
             plot.series.push_back(std::move(series));
@@ -226,7 +238,7 @@ const BenchRow* best_of(const BenchScene& scene, const std::string& effect, cons
     const BenchRow* best = nullptr;
     for (const std::string& method : lookup.methods) {
         const BenchRow* row = lookup.row(scene.name, effect, method);
-        if (row && row->conservative && (best == nullptr || better(*row, *best))) best = row;
+        if (row && row->conservative && !row->own_arithmetic && (best == nullptr || better(*row, *best))) best = row;
     }
     return best;
 }

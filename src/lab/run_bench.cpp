@@ -27,7 +27,7 @@ std::vector<BenchEffect> chosen_effects(const BenchPlan& plan) {
 }
 
 std::vector<std::string> chosen_methods(const BenchPlan& plan) {
-    if (plan.methods.empty()) return bench_methods();
+    if (plan.methods.empty()) return bench_default_methods();
     for (const std::string& method : plan.methods) settings_of(method, plan.settings.method);
     return plan.methods;
 }
@@ -174,6 +174,12 @@ std::vector<std::string> bench_methods() {
     for (const CullingChoice& choice : culling_tests()) names.push_back(choice.name);
     for (const char* visibility : {"accumulation", "interleaved", "micropolygon"}) names.emplace_back(visibility);
     if (!tracer_name().empty()) names.emplace_back("raytrace");
+    return names;
+}
+
+std::vector<std::string> bench_default_methods() {
+    std::vector<std::string> names = bench_methods();
+    std::erase(names, "micropolygon");
     return names;
 }
 

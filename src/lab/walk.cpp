@@ -95,8 +95,8 @@ void for_each_sample(const Tile& tile, int slots, const Body& body) {
         }
 }
 
-bool differ(const Hits& a, const Hits& b, std::size_t s) {
-    return a.triangle[s] != b.triangle[s] || std::memcmp(&a.depth[s], &b.depth[s], sizeof(float)) != 0;
+bool differ(const Hits& a, const Hits& b, std::size_t s, bool depths) {
+    return a.triangle[s] != b.triangle[s] || (depths && std::memcmp(&a.depth[s], &b.depth[s], sizeof(float)) != 0);
 }
 
 // The middle of a triangle at one knot, in pixels, with its circle of confusion there.
@@ -130,6 +130,11 @@ MethodSettings settings_of(const std::string& method, MethodSettings settings) {
     settings.visibility = VisibilityMethod::kStochastic;
     settings.culling = method;
     return settings;
+}
+
+bool has_own_arithmetic(const std::string& method) {
+    const VisibilityMethod visibility = settings_of(method, {}).visibility;
+    return visibility == VisibilityMethod::kMicropolygon || visibility == VisibilityMethod::kRaytrace;
 }
 
 FrameWalk::FrameWalk(const Frame& frame, const SampleTable& samples, const MethodSettings& settings,
@@ -209,6 +214,7 @@ FrameWalk::Counts FrameWalk::count(const std::string& method, MethodMap* map) {
                 {view.width, view.height, std::vector<std::uint32_t>(pixels), std::vector<std::uint32_t>(pixels)},
                 std::vector<std::uint32_t>(pixels)};
     }
+    const bool depths = !has_own_arithmetic(method);
     Counts result;
     Adder adder(result.cover);
     std::atomic<std::int64_t> all_lost{0};
@@ -220,7 +226,7 @@ FrameWalk::Counts FrameWalk::count(const std::string& method, MethodMap* map) {
         visibility.cover(tiles_[i], hits, counts, map != nullptr ? &map->cover : nullptr);
         std::int64_t lost = 0;
         for_each_sample(tiles_[i], slots, [&](int px, int py, std::size_t s) {
-            if (!differ(hits, reference_[i], s)) return;
+            if (!differ(hits, reference_[i], s, depths)) return;
             ++lost;
             if (map != nullptr) ++map->lost[static_cast<std::size_t>(py) * view.width + px];
         });

@@ -24,6 +24,9 @@ struct MethodMap {
 /// what is neither.
 MethodSettings settings_of(const std::string& method, MethodSettings settings);
 
+/// Decides coverage and depth by other arithmetic than the exact test, so that depths differ in their last bits.
+bool has_own_arithmetic(const std::string& method);
+
 class FrameWalk {
   public:
     /// Frame and samples must outlive the walk, and the methods it is asked for must be ones that take such samples
@@ -44,7 +47,8 @@ class FrameWalk {
 
     struct Counts {
         CoverCounts cover;
-        std::int64_t lost = 0;  ///< samples that differ from the reference in any bit of triangle or depth
+        std::int64_t lost = 0;  ///< samples that differ from the reference: any bit of triangle or depth, or,
+                                ///< where the arithmetic is another, the triangle
         double frame_ms = 0.0;
     };
     /// `map`, of the whole picture, may be null.

@@ -52,7 +52,8 @@ void store(const glm::dmat4& matrix, std::array<double, 16>& out) {
         for (int row = 0; row < 4; ++row) out[4 * column + row] = matrix[column][row];
 }
 
-FrameInfo frame_info(const Frame& frame, const RenderSettings& settings, double number, const PixelRect& crop) {
+FrameInfo frame_info(const Frame& frame, std::span<const Index> animations, const RenderSettings& settings,
+                     double number, const PixelRect& crop) {
     const View& view = frame.view;
     FrameInfo info;
     info.width = view.width;
@@ -76,14 +77,27 @@ FrameInfo frame_info(const Frame& frame, const RenderSettings& settings, double 
     projection[2][2] = -1.0;
     projection[2][3] = view.perspective ? -1.0 : 0.0;
     projection[3][3] = view.perspective ? 0.0 : 1.0;
+    info.fx = view.fx;
+    info.fy = view.fy;
     store(to_camera, info.world_to_camera);
     store(projection * to_camera, info.world_to_ndc);
+    for (int k = 0; k <= info.max_motion_segments; ++k) {
+        FrameInfo::Knot knot;
+        knot.time = view.shutter.at(static_cast<double>(k) / info.max_motion_segments);
+        store(world_to_camera(view, evaluate(*frame.scene, animations, knot.time)), knot.world_to_camera);
+        info.knots.push_back(knot);
+        if (view.shutter.close == view.shutter.open) break;  // one instant
+    }
     return info;
 }
 
 glm::vec3 background_of(const Scene& scene, const ImageSettings& image) {
     if (image.background) return {(*image.background)[0], (*image.background)[1], (*image.background)[2]};
     return scene.background.value_or(glm::vec3(0.0f));
+}
+
+ShadingRate rate_of(const std::string& name) {
+    return name == "sample" ? ShadingRate::kSample : name == "pixel" ? ShadingRate::kPixel : ShadingRate::kDecoupled;
 }
 
 // Tallest band of rows whose film stays small whatever the width; a usual picture is a single band.
@@ -197,6 +211,10 @@ void Renderer::render(const RenderSettings& settings, double number, RowSink& si
     stats.isa = isa_name(cpu_isa());
     stats.threads = thread_count();
 
+    if (settings.image.environment != environment_name_) {
+        environment_ = settings.image.environment.empty() ? nullptr : load_environment(settings.image.environment);
+        environment_name_ = settings.image.environment;
+    }
     const View view = make_view(scene_, settings, number);
     const std::vector<Index> animations = choose_animations(scene_, settings.animation.animation);
     Frame frame = pose_frame(scene_, view, animations, settings.shutter);
@@ -220,10 +238,11 @@ void Renderer::render(const RenderSettings& settings, double number, RowSink& si
     const PixelRect rendered = grown(crop, film.reach(), view.width, view.height);
     const Visibility visibility(frame, samples, settings.method, rendered);
     const auto binned = Clock::now();
-    const ShadingScene shading(frame, {settings.method.shadows});
+    const ShadingScene shading(frame, {settings.method.shadows, settings.method.brdf, settings.method.texture_filter,
+                                       rate_of(settings.method.shading), settings.image.spp, environment_});
     const auto prepared = Clock::now();
 
-    FrameInfo info = frame_info(frame, settings, number, crop);
+    FrameInfo info = frame_info(frame, animations, settings, number, crop);
     const AovTables aov_tables(frame, settings, number);
     aov_tables.describe(settings.image.aovs, info);
     std::optional<AovFilm> aov_film;

@@ -109,7 +109,7 @@ void Film::add(const Tile& tile, const SampleTable& samples, const Hits& hits, c
     // Points, then the background.
     const std::size_t background = shade.colors.size();
     std::vector<Float4> shown(background + 1, sample_of(settings_.background, 0.0f));
-    for (std::size_t i = 0; i < background; ++i) shown[i] = sample_of(glm::vec3(shade.colors[i]), 1.0f);
+    for (std::size_t i = 0; i < background; ++i) shown[i] = sample_of(glm::vec3(shade.colors[i]), shade.colors[i].w);
 
     const double share = 1.0 / samples.spp();
     Patch patch;

@@ -300,13 +300,9 @@ std::span<const SampleVector> SampleTable::block(int bx, int by, std::vector<Sam
     return room;
 }
 
-std::span<const SampleVector> SampleTable::cell(int cx, int cy) const {
-    const std::size_t vectors = static_cast<std::size_t>(kBlocksPerCell) * spp_;
-    return std::span(vectors_).subspan(cell_index(cx, cy) * vectors, vectors);
-}
-
 std::span<const SampleVector> SampleTable::cell(int cx, int cy, std::vector<SampleVector>& room) const {
-    const std::span<const SampleVector> stored = cell(cx, cy);
+    const std::size_t vectors = static_cast<std::size_t>(kBlocksPerCell) * spp_;
+    const auto stored = std::span(vectors_).subspan(cell_index(cx, cy) * vectors, vectors);
     if (!times_.roll()) return stored;
     room.assign(stored.begin(), stored.end());
     roll(room, cx, cy);

@@ -76,7 +76,6 @@ class SampleTable {
     /// All vectors of a cell: [block * slots + slot], block = 8 * (row in the cell) + column, the order of Hits. Cells
     /// are addressed in the whole picture: cell (cx, cy) covers pixels [32 cx, 32 cx + 32) x ...
     std::span<const SampleVector> cell(int cx, int cy, std::vector<SampleVector>& room) const;
-    std::span<const SampleVector> cell(int cx, int cy) const;  ///< as block(bx, by)
 
     /// Sample index (0 .. spp - 1) of each lane of each slot of a block: at [slot * kLanes + lane]. The inverse for one
     /// lane is slot_of().

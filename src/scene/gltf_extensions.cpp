@@ -14,7 +14,8 @@ namespace {
 constexpr std::string_view kSupported[] = {
     "EXT_cameras_sensor",    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",         "KHR_draco_mesh_compression",
     "KHR_lights_punctual",   "KHR_materials_unlit",     "KHR_materials_emissive_strength", "KHR_mesh_quantization",
-    "KHR_texture_transform", "KHR_node_visibility",
+    "KHR_texture_transform", "KHR_node_visibility",     "KHR_materials_clearcoat",         "KHR_materials_ior",
+    "KHR_materials_sheen",   "KHR_materials_specular",  "KHR_materials_transmission",
 };
 
 /// Known ones that change nothing in a picture.
@@ -25,14 +26,9 @@ struct Loss {
 };
 constexpr Loss kLosses[] = {
     {"KHR_materials_anisotropy", "highlights are round"},
-    {"KHR_materials_clearcoat", "surfaces have no clear coat"},
     {"KHR_materials_dispersion", "glass does not spread colours"},
-    {"KHR_materials_ior", "surfaces reflect as with an index of refraction of 1.5"},
     {"KHR_materials_iridescence", "thin films show no colours"},
     {"KHR_materials_pbrSpecularGlossiness", "materials show their metallic-roughness values"},
-    {"KHR_materials_sheen", "cloth has no sheen"},
-    {"KHR_materials_specular", "surfaces reflect with full strength, uncoloured"},
-    {"KHR_materials_transmission", "glass is opaque"},
     {"KHR_materials_diffuse_transmission", "leaves and cloth let no light through"},
     {"KHR_materials_variants", "the default variant is shown"},
     {"KHR_materials_volume", "glass has no thickness"},

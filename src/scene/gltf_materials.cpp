@@ -1,8 +1,9 @@
-// Textures, samplers and materials (glTF 2.0, 3.8 and 3.9) with KHR_texture_transform, KHR_materials_unlit and
-// KHR_materials_emissive_strength.
+// Textures, samplers and materials (glTF 2.0, 3.8 and 3.9) with KHR_texture_transform and KHR_materials_unlit,
+// emissive_strength, ior, specular, clearcoat, sheen and transmission.
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include "scene/gltf_parts.h"
 
@@ -129,12 +130,69 @@ void clamp_factor(Document& document, const Object& object, const char* name, T&
     value = clamped;
 }
 
+glm::vec3 read_color(const Object& object, const char* key, const glm::vec3& otherwise) {
+    const auto color = object.numbers(key, 3);
+    return color.empty() ? otherwise : glm::vec3(color[0], color[1], color[2]);
+}
+
+void read_specular(Document& document, const Scene& scene, const Object& object, Material& material) {
+    if (object.has_extension("KHR_materials_ior")) {
+        const Object ior = object.extension("KHR_materials_ior");
+        material.ior = static_cast<float>(ior.number("ior", 1.5));
+        if (!(material.ior == 0.0f || material.ior >= 1.0f)) {
+            document.warn(fmt::format("{} has an index of refraction of {}; 1 is used", ior.where(), material.ior));
+            material.ior = 1.0f;
+        }
+    }
+    if (!object.has_extension("KHR_materials_specular")) return;
+    const Object specular = object.extension("KHR_materials_specular");
+    material.specular = static_cast<float>(specular.number("specularFactor", 1.0));
+    material.specular_texture = read_texture_info(document, scene, specular, "specularTexture");
+    material.specular_color = glm::max(read_color(specular, "specularColorFactor", glm::vec3(1.0f)), glm::vec3(0.0f));
+    material.specular_color_texture = read_texture_info(document, scene, specular, "specularColorTexture");
+    clamp_factor(document, specular, "specularFactor", material.specular, 0.0f, 1.0f);
+}
+
+void read_layers(Document& document, const Scene& scene, const Object& object, Material& material) {
+    if (object.has_extension("KHR_materials_clearcoat")) {
+        const Object coat = object.extension("KHR_materials_clearcoat");
+        material.clearcoat = static_cast<float>(coat.number("clearcoatFactor", 0.0));
+        material.clearcoat_roughness = static_cast<float>(coat.number("clearcoatRoughnessFactor", 0.0));
+        material.clearcoat_texture = read_texture_info(document, scene, coat, "clearcoatTexture");
+        material.clearcoat_roughness_texture = read_texture_info(document, scene, coat, "clearcoatRoughnessTexture");
+        material.clearcoat_normal_texture = read_texture_info(document, scene, coat, "clearcoatNormalTexture");
+        if (coat.has("clearcoatNormalTexture"))
+            material.clearcoat_normal_scale =
+                static_cast<float>(coat.child("clearcoatNormalTexture").number("scale", 1.0));
+        clamp_factor(document, coat, "clearcoatFactor", material.clearcoat, 0.0f, 1.0f);
+        clamp_factor(document, coat, "clearcoatRoughnessFactor", material.clearcoat_roughness, 0.0f, 1.0f);
+    }
+    if (object.has_extension("KHR_materials_sheen")) {
+        const Object sheen = object.extension("KHR_materials_sheen");
+        material.sheen_color = read_color(sheen, "sheenColorFactor", glm::vec3(0.0f));
+        material.sheen_color_texture = read_texture_info(document, scene, sheen, "sheenColorTexture");
+        material.sheen_roughness = static_cast<float>(sheen.number("sheenRoughnessFactor", 0.0));
+        material.sheen_roughness_texture = read_texture_info(document, scene, sheen, "sheenRoughnessTexture");
+        for (int k = 0; k < 3; ++k)
+            clamp_factor(document, sheen, "sheenColorFactor", material.sheen_color[k], 0.0f, 1.0f);
+        clamp_factor(document, sheen, "sheenRoughnessFactor", material.sheen_roughness, 0.0f, 1.0f);
+    }
+    if (object.has_extension("KHR_materials_transmission")) {
+        const Object glass = object.extension("KHR_materials_transmission");
+        material.transmission = static_cast<float>(glass.number("transmissionFactor", 0.0));
+        material.transmission_texture = read_texture_info(document, scene, glass, "transmissionTexture");
+        clamp_factor(document, glass, "transmissionFactor", material.transmission, 0.0f, 1.0f);
+    }
+}
+
 Material read_material(Document& document, const Scene& scene, const Object& object) {
     Material material;
     material.name = object.text("name");
     read_metallic_roughness(document, scene, object, material);
     read_emission(document, scene, object, material);
     read_alpha(object, material);
+    read_specular(document, scene, object, material);
+    read_layers(document, scene, object, material);
     material.double_sided = object.boolean("doubleSided", false);
     material.unlit = object.has_extension("KHR_materials_unlit");
     material.normal_texture = read_texture_info(document, scene, object, "normalTexture");

@@ -77,6 +77,7 @@ class Writer {
     // One step for each of the scene's vectors.
     void images();
     void materials();
+    void material_extensions(const Material& m, Json& out);
     void meshes();
     void skins();
     void cameras();
@@ -188,6 +189,46 @@ Json Writer::texture_info(const TextureRef& ref) {
     return info;
 }
 
+// Only what differs from a material without the extension is written.
+void Writer::material_extensions(const Material& m, Json& out) {
+    const auto color = [](const glm::vec3& c) { return Json{c.x, c.y, c.z}; };
+    const auto put = [&](const char* extension, Json value) {
+        use(extension);
+        out["extensions"][extension] = std::move(value);
+    };
+    const auto put_texture = [&](Json& json, const char* key, const TextureRef& ref) {
+        if (ref.image != kNone) json[key] = texture_info(ref);
+    };
+    if (m.ior != 1.5f) put("KHR_materials_ior", {{"ior", m.ior}});
+    if (m.specular != 1.0f || m.specular_color != glm::vec3(1.0f) || m.specular_texture.image != kNone ||
+        m.specular_color_texture.image != kNone) {
+        Json json{{"specularFactor", m.specular}, {"specularColorFactor", color(m.specular_color)}};
+        put_texture(json, "specularTexture", m.specular_texture);
+        put_texture(json, "specularColorTexture", m.specular_color_texture);
+        put("KHR_materials_specular", std::move(json));
+    }
+    if (m.clearcoat > 0.0f) {
+        Json json{{"clearcoatFactor", m.clearcoat}, {"clearcoatRoughnessFactor", m.clearcoat_roughness}};
+        put_texture(json, "clearcoatTexture", m.clearcoat_texture);
+        put_texture(json, "clearcoatRoughnessTexture", m.clearcoat_roughness_texture);
+        put_texture(json, "clearcoatNormalTexture", m.clearcoat_normal_texture);
+        if (m.clearcoat_normal_texture.image != kNone)
+            json["clearcoatNormalTexture"]["scale"] = m.clearcoat_normal_scale;
+        put("KHR_materials_clearcoat", std::move(json));
+    }
+    if (m.sheen_color != glm::vec3(0.0f)) {
+        Json json{{"sheenColorFactor", color(m.sheen_color)}, {"sheenRoughnessFactor", m.sheen_roughness}};
+        put_texture(json, "sheenColorTexture", m.sheen_color_texture);
+        put_texture(json, "sheenRoughnessTexture", m.sheen_roughness_texture);
+        put("KHR_materials_sheen", std::move(json));
+    }
+    if (m.transmission > 0.0f) {
+        Json json{{"transmissionFactor", m.transmission}};
+        put_texture(json, "transmissionTexture", m.transmission_texture);
+        put("KHR_materials_transmission", std::move(json));
+    }
+}
+
 void Writer::materials() {
     for (const Material& m : scene_.materials) {
         Json out{{"name", m.name}};
@@ -228,6 +269,7 @@ void Writer::materials() {
             use("KHR_materials_unlit");
             out["extensions"]["KHR_materials_unlit"] = Json::object();
         }
+        material_extensions(m, out);
         root_["materials"].push_back(std::move(out));
     }
 }

@@ -42,4 +42,24 @@ bool decode_image(std::span<const std::uint8_t> bytes, Image& image, std::string
     return true;
 }
 
+bool read_hdr(const std::string& file, int& width, int& height, std::vector<float>& rgb, std::string& problem) {
+    int channels = 0;
+    if (stbi_info(file.c_str(), &width, &height, &channels) == 0 || stbi_is_hdr(file.c_str()) == 0) {
+        problem = "it does not exist or is no Radiance .hdr picture";
+        return false;
+    }
+    if (width <= 0 || height <= 0 || std::int64_t{width} * height > kMostTexels / 2) {
+        problem = fmt::format("it has {} x {} pixels", width, height);
+        return false;
+    }
+    const std::unique_ptr<float, void (*)(void*)> pixels(stbi_loadf(file.c_str(), &width, &height, &channels, 3),
+                                                         stbi_image_free);
+    if (!pixels) {
+        problem = fmt::format("it cannot be read ({})", stbi_failure_reason());
+        return false;
+    }
+    rgb.assign(pixels.get(), pixels.get() + 3 * static_cast<std::size_t>(width) * height);
+    return true;
+}
+
 }  // namespace pentaprism

@@ -51,4 +51,9 @@ void pose_positions(const Scene& scene, const Pose& pose, const Placement& place
 /// still point to the side that is counter-clockwise in the file.
 void pose_normals(const Scene& scene, const Pose& pose, const Placement& placement, std::span<glm::vec3> out);
 
+/// World-space tangents of any length, by the same transforms as positions; `tangents`: the primitive's, one for each
+/// vertex. w stays, but turns over where `mirrored`: the bitangent is cross(normal, tangent) * w.
+void pose_tangents(const Scene& scene, const Pose& pose, const Placement& placement,
+                   std::span<const glm::vec4> tangents, bool mirrored, std::span<glm::vec4> out);
+
 }  // namespace pentaprism

@@ -115,4 +115,17 @@ void pose_normals(const Scene& scene, const Pose& pose, const Placement& placeme
     });
 }
 
+void pose_tangents(const Scene& scene, const Pose& pose, const Placement& placement,
+                   std::span<const glm::vec4> tangents, bool mirrored, std::span<glm::vec4> out) {
+    const Parts parts = parts_of(scene, pose, placement);
+    std::vector<glm::dvec3> moved(tangents.begin(), tangents.end());
+    morph(parts, moved, [](const MorphTarget& target) -> const std::vector<glm::vec3>& { return target.tangents; });
+    for_each_vertex(scene, pose, placement, parts, [&](std::size_t i, const Affine& transform) {
+        const glm::dvec3 t = transform.x * moved[i].x + transform.y * moved[i].y + transform.z * moved[i].z;
+        const double length = glm::length(t);
+        out[i] = glm::vec4(length > 0.0 ? glm::vec3(t / length) : glm::vec3(0.0f),
+                           mirrored ? -tangents[i].w : tangents[i].w);
+    });
+}
+
 }  // namespace pentaprism

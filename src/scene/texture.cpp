@@ -6,6 +6,7 @@
 
 #include "base/float4.h"
 #include "base/parallel.h"
+#include "scene/tangents.h"
 
 namespace pentaprism {
 namespace {
@@ -225,6 +226,13 @@ Textures::Textures(const Scene& scene) {
         mark(as_data, material.metallic_roughness_texture);
         mark(as_data, material.normal_texture);
         mark(as_data, material.occlusion_texture);
+        mark(as_data, material.specular_texture);
+        mark(as_color, material.specular_color_texture);
+        for (const TextureRef* ref :
+             {&material.clearcoat_texture, &material.clearcoat_roughness_texture, &material.clearcoat_normal_texture,
+              &material.transmission_texture, &material.sheen_roughness_texture})
+            mark(as_data, *ref);
+        mark(as_color, material.sheen_color_texture);
         if (material.alpha_mode != AlphaMode::kOpaque) mark(cut_out, material.base_color_texture);
     }
     colors_.resize(images);
@@ -237,6 +245,20 @@ Textures::Textures(const Scene& scene) {
     std::vector<std::unique_ptr<const OpacityRange>> ranges(images);
     parallel_for(images, [&](std::size_t i) {
         if (cut_out[i]) ranges[i] = std::make_unique<OpacityRange>(*colors_[i]);
+    });
+    tangents_.resize(scene.meshes.size());
+    parallel_for(scene.meshes.size(), [&](std::size_t i) {
+        for (const Primitive& primitive : scene.meshes[i].primitives) {
+            tangents_[i].emplace_back();
+            if (primitive.material == kNone) continue;
+            const Material& material = scene.materials[primitive.material];
+            const bool mapped = material.normal_texture.image != kNone;
+            if (!mapped && material.clearcoat_normal_texture.image == kNone) continue;
+            const TextureRef& ref = mapped ? material.normal_texture : material.clearcoat_normal_texture;
+            tangents_[i].back() = primitive.tangents.size() == primitive.positions.size()
+                                      ? primitive.tangents
+                                      : make_tangents(primitive, ref.texcoord == 1 ? 1 : 0);
+        }
     });
     opacity_classes_.resize(scene.meshes.size());
     parallel_for(scene.meshes.size(), [&](std::size_t i) {

@@ -9,6 +9,7 @@
 #include <glm/vec4.hpp>
 #include <memory>
 #include <pentaprism/scene.h>
+#include <span>
 #include <vector>
 
 #include "scene/opacity_class.h"
@@ -81,6 +82,10 @@ class Textures {
         return classes.empty() ? nullptr : classes.data();
     }
 
+    /// Of each vertex of a primitive whose material has a normal map: the primitive's own, or made
+    /// (scene/tangents.h); empty for other ones.
+    std::span<const glm::vec4> tangents(Index mesh, Index primitive) const { return tangents_[mesh][primitive]; }
+
   private:
     using Table = std::vector<std::unique_ptr<const Pyramid>>;  // by index of the image
     static const Pyramid* find(const Table& table, Index image) {
@@ -88,6 +93,7 @@ class Textures {
     }
     Table colors_, data_;
     std::vector<std::vector<std::vector<OpacityClass>>> opacity_classes_;  // [mesh][primitive][triangle]
+    std::vector<std::vector<std::vector<glm::vec4>>> tangents_;            // [mesh][primitive][vertex]
 };
 
 /// Built once for a scene and handed to each of its frames.

@@ -46,13 +46,18 @@ float saturate(float x) {
 
 }  // namespace
 
-Lighting pose_lights(const Frame& frame, const glm::dvec3& eye) {
+Lighting pose_lights(const Frame& frame, const glm::dvec3& eye, const Environment* environment) {
     const Scene& scene = *frame.scene;
     Lighting lighting;
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
         const Node& node = scene.nodes[i];
         if (node.light == kNone || !node.visible || i >= frame.middle.world.size()) continue;
         lighting.lights.push_back(posed(scene.lights[node.light], frame.middle.world[i], eye));
+    }
+    if (environment) {
+        lighting.environment = environment;
+        if (const auto& light = environment->sun()) lighting.lights.push_back(sun(light->direction, light->irradiance));
+        return lighting;
     }
     return lighting.lights.empty() ? default_lighting() : lighting;
 }

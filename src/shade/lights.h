@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "frame/frame.h"
+#include "shade/environment.h"
 
 namespace pentaprism {
 
@@ -28,14 +29,25 @@ struct Lighting {
     std::vector<PosedLight> lights;
     /// Uniform light from above and from below; black unless the scene has no lights of its own.
     glm::vec3 sky{0.0f}, ground{0.0f};
-    bool ambient() const { return sky != glm::vec3(0.0f) || ground != glm::vec3(0.0f); }
-    /// Light from direction n (or around it), between ground and sky.
-    glm::vec3 ambient_towards(const glm::vec3& n) const { return ground + (sky - ground) * (0.5f + 0.5f * n.y); }
+    const Environment* environment = nullptr;  ///< instead of sky and ground; not owned
+    bool ambient() const { return environment || sky != glm::vec3(0.0f) || ground != glm::vec3(0.0f); }
+
+    /// What a white matte surface with this normal shows of the light from all around.
+    glm::vec3 matte(const glm::vec3& normal) const {
+        return environment ? environment->matte(normal) : between(normal);
+    }
+    /// What a mirror of this roughness shows in that direction.
+    glm::vec3 shiny(const glm::vec3& direction, float roughness) const {
+        return environment ? environment->shiny(direction, roughness) : between(direction);
+    }
+
+  private:
+    glm::vec3 between(const glm::vec3& n) const { return ground + (sky - ground) * (0.5f + 0.5f * n.y); }
 };
 
-/// The visible lights of the scene. A scene without any is lit by a key light from above, a weak one from the other
-/// side and a pale sky, all fixed in the world.
-Lighting pose_lights(const Frame& frame, const glm::dvec3& eye);
+/// The visible lights of the scene, and the environment with its sun. A scene without either is lit by a key light from
+/// above, a weak one from the other side and a pale sky, all fixed in the world.
+Lighting pose_lights(const Frame& frame, const glm::dvec3& eye, const Environment* environment);
 
 Incoming incoming(const PosedLight& light, const glm::vec3& position);
 

@@ -17,7 +17,7 @@ namespace {
 // A point belongs to one pixel, so a tile may be shaded in pieces of whole blocks: memory stays bounded at 4096 samples
 // a pixel.
 constexpr int kSamplesPerChunk = 1 << 16;
-constexpr int kQuarters = ShadowMap::kSamples;
+constexpr int kQuarters = QuarterColors::kQuarters;
 constexpr float kBrightest = 0x1p20f;
 
 glm::vec4 contained(const glm::vec3& color) {
@@ -77,15 +77,12 @@ class FewPoints {
 struct PointSamples {
     Mean all;
     FewPoints quarter[kQuarters];
-    std::uint32_t color[kQuarters] = {kBackground, kBackground, kBackground, kBackground};
-
-    ShadowReceiver receiver(int q) const {
-        ShadowReceiver out;
-        out.quarter = q;
-        quarter[q].write(out);
-        return out;
-    }
+    QuarterColors colors;
 };
+
+int quarter_of(float t) {
+    return std::min(static_cast<int>(t * kQuarters), kQuarters - 1);
+}
 
 // Of a pixel in the picture, for what has to be random in it.
 std::uint32_t seed_of(const Tile& tile, int pixel, std::uint32_t salt) {
@@ -95,8 +92,10 @@ std::uint32_t seed_of(const Tile& tile, int pixel, std::uint32_t salt) {
     return mix(mix(static_cast<std::uint32_t>(x) + 0x9e3779b9u * salt) + static_cast<std::uint32_t>(y));
 }
 
+}  // namespace
+
 // One triangle in its cell, localized for each segment of its motion when a sample first asks.
-class LocalRun {
+class TileShader::LocalRun {
   public:
     LocalRun(const Frame& frame, const CellCentre& centre) : frame_(frame), centre_(centre) {}
 
@@ -125,7 +124,7 @@ class LocalRun {
 };
 
 // The table's samples of a cell, as the exact test sees them.
-class CellSamples {
+class TileShader::CellSamples {
   public:
     CellSamples(const SampleTable& samples, const Tile& tile) {
         vectors_ = samples.cell(tile.cell_x(), tile.cell_y(), room_);
@@ -143,6 +142,8 @@ class CellSamples {
     std::size_t slots_;
 };
 
+namespace {
+
 std::size_t hit_index(int pixel, int slot, int slots) {
     return (static_cast<std::size_t>(pixel / kLanes) * slots + slot) * kLanes + pixel % kLanes;
 }
@@ -152,8 +153,8 @@ std::size_t hit_index(int pixel, int slot, int slots) {
 std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& samples, const Tile& tile,
                                const Hits& hits, TileShade& out) {
     const Frame& frame = scene.frame();
-    const Shadows& shadows = scene.shadows();
-    std::int64_t shaded_points = 0;
+    const bool shadows = scene.shadows().any();
+    shaded_ = 0;
     PointSamples points[2];
     const int slots = samples.slots();
     out.point_of_sample.resize(hits.triangle.size());
@@ -163,66 +164,133 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
     LocalRun run(frame, cell_centre(frame.view, tile.cell_x(), tile.cell_y()));
     const int blocks_per_chunk = std::max(1, kSamplesPerChunk / (kLanes * slots));
     for (int block = 0; block < kBlocksPerCell; block += blocks_per_chunk) {
-        collect(samples, tile, hits, block, std::min(block + blocks_per_chunk, kBlocksPerCell), out);
+        collect(scene, samples, tile, hits, block, std::min(block + blocks_per_chunk, kBlocksPerCell), out);
+        shade_background(scene, samples, tile, out);
         sort_by_triangle();
         std::uint32_t begin = 0;
         for (std::size_t number = 0; number < triangles_.size(); ++number) {
             const std::uint32_t end = counts_[number];
             run.start(triangles_[number]);
             const ShadedTriangle shaded(scene, triangles_[number]);
+            locals_of_run_ = number;
+            if (scene.options().rate == ShadingRate::kDecoupled) {
+                shade_cells(scene, cell, shaded, run, begin, end, slots, out);
+                begin = end;
+                continue;
+            }
             while (begin < end) {
                 // The samples of one pixel, in index order; those that see the back are another point. Where shadows
                 // fall, a point has a colour for each quarter of the shutter.
                 const std::uint16_t pixel = sorted_[begin].pixel;
                 for (PointSamples& point : points) point = {};
-                for (; begin < end && sorted_[begin].pixel == pixel; ++begin) {
+                const std::uint32_t last = scene.options().rate == ShadingRate::kSample ? begin + 1 : end;
+                for (; begin < last && sorted_[begin].pixel == pixel; ++begin) {
                     const int slot = sorted_[begin].slot;
                     const LocalSample sample = cell.at(pixel, slot);
                     const Seen seen = run.see(sample);
                     PointSamples& point = points[seen.front];
                     point.all.add(seen.barycentrics);
-                    const int quarter =
-                        shadows.any() ? std::min(static_cast<int>(sample.t * kQuarters), kQuarters - 1) : 0;
+                    const int quarter = shadows ? quarter_of(sample.t) : 0;
                     point.quarter[quarter].add(seen.barycentrics);
-                    if (point.color[quarter] == kBackground) {
-                        point.color[quarter] = static_cast<std::uint32_t>(out.colors.size());
-                        out.colors.emplace_back();
-                    }
-                    out.point_of_sample[hit_index(pixel, slot, slots)] = point.color[quarter];
+                    out.point_of_sample[hit_index(pixel, slot, slots)] = point.colors.at(quarter, out);
                 }
                 for (int front = 0; front < 2; ++front) {
                     const PointSamples& point = points[front];
                     if (point.all.count() == 0) continue;
-                    ++shaded_points;
-                    shaded.shade(point.all.value(), front != 0, lit_);
-                    const float texel = lit_.shadowed.empty() ? 0.0f : scene.shadow_texel(lit_.position);
-                    for (int q = 0; q < kQuarters; ++q) {
-                        if (point.color[q] == kBackground) continue;
-                        glm::vec3 color = lit_.rest;
-                        ShadowReceiver receiver = point.receiver(q);
-                        receiver.triangle = triangles_[number];
-                        receiver.texel = texel;
-                        for (const LitColor::Share& share : lit_.shadowed) {
-                            receiver.offset = share.offset;
-                            color += share.color * shadows.lit(share.light, receiver, lit_.position,
-                                                               seed_of(tile, pixel, 8 * share.light + 2 * q + front));
-                        }
-                        out.colors[point.color[q]] = contained(color);
-                    }
+                    ++shaded_;
+                    shaded.shade(point.all.value(), front != 0, ShadingCell{}, lit_);
+                    light_quarters(
+                        scene, point.colors, triangles_[number], seed_of(tile, pixel, front),
+                        [&](int q, ShadowReceiver& receiver) { point.quarter[q].write(receiver); }, out);
                 }
             }
         }
     }
-    return shaded_points;
+    return shaded_;
+}
+
+// What shadows leave of a point's light in each quarter of the shutter that its samples see.
+template <class Points>
+void TileShader::light_quarters(const ShadingScene& scene, const QuarterColors& colors, std::uint32_t triangle,
+                                std::uint32_t seed, const Points& write_points, TileShade& out) {
+    ShadowReceiver receiver;
+    receiver.triangle = triangle;
+    if (!lit_.shadowed.empty()) receiver.texel = scene.shadow_texel(lit_.position);
+    for (int q = 0; q < kQuarters; ++q) {
+        if (colors.color[q] == kBackground) continue;
+        glm::vec3 color = lit_.rest;
+        if (!lit_.shadowed.empty()) {
+            receiver.quarter = q;
+            write_points(q, receiver);
+            for (const LitColor::Share& share : lit_.shadowed) {
+                receiver.offset = share.offset;
+                color += share.color *
+                         scene.shadows().lit(share.light, receiver, lit_.position, mix(seed + 8 * share.light + 2 * q));
+            }
+        }
+        out.colors[colors.color[q]] = contained(color);
+    }
+}
+
+// Everything of a cell follows from the cell alone, so nothing depends on which tiles see parts of it.
+void TileShader::shade_cells(const ShadingScene& scene, const CellSamples& samples, const ShadedTriangle& shaded,
+                             LocalRun& run, std::uint32_t begin, std::uint32_t end, int slots, TileShade& out) {
+    const bool shadows = scene.shadows().any();
+    const std::uint32_t triangle = triangles_[locals_of_run_];
+    cells_.clear();
+    std::size_t size = 16;
+    while (size < 2 * static_cast<std::size_t>(end - begin)) size *= 2;
+    cell_table_.assign(size, 0u);
+    for (; begin < end; ++begin) {
+        const std::uint16_t pixel = sorted_[begin].pixel;
+        const int slot = sorted_[begin].slot;
+        const LocalSample sample = samples.at(pixel, slot);
+        const Seen seen = run.see(sample);
+        Mean own;
+        own.add(seen.barycentrics);
+        const glm::vec3 b = own.value();
+        ShadingCell cell = shaded.cell_of(b);
+        const bool alone = cell.key == 0;
+        if (alone) cell.key = (std::uint64_t{1} << 63) | (std::uint64_t{pixel} << 16) | static_cast<unsigned>(slot);
+        cell.key = 2 * cell.key + (seen.front ? 1 : 0);
+        std::size_t at = static_cast<std::size_t>(cell.key * 0x9e3779b97f4a7c15ull >> 40) & (size - 1);
+        while (cell_table_[at] != 0 && cells_[cell_table_[at] - 1].cell.key != cell.key) at = (at + 1) & (size - 1);
+        if (cell_table_[at] == 0) {
+            cells_.push_back({cell, alone, seen.front, b, {}});
+            cell_table_[at] = static_cast<std::uint32_t>(cells_.size());
+        }
+        QuarterColors& colors = cells_[cell_table_[at] - 1].colors;
+        out.point_of_sample[hit_index(pixel, slot, slots)] = colors.at(shadows ? quarter_of(sample.t) : 0, out);
+    }
+    for (const SharedCell& shared : cells_) {
+        ++shaded_;
+        const ShadingCell& cell = shared.cell;
+        const glm::vec3 b = shared.alone ? shared.barycentrics : shaded.barycentrics_at(cell.centre);
+        shaded.shade(b, shared.front, cell, lit_);
+        const std::uint32_t seed =
+            mix(static_cast<std::uint32_t>(cell.key) + mix(static_cast<std::uint32_t>(cell.key >> 32) + triangle));
+        light_quarters(
+            scene, shared.colors, triangle, seed,
+            [&](int, ShadowReceiver& receiver) {
+                receiver.count = shared.alone ? 1 : 4;
+                receiver.points[0] = b;
+                for (int i = 0; i < 4 && !shared.alone; ++i)
+                    receiver.points[i] =
+                        shaded.barycentrics_at(cell.centre + (i % 2 ? 0.25 : -0.25) * glm::dvec2(cell.along) +
+                                               (i / 2 ? 0.25 : -0.25) * glm::dvec2(cell.across));
+            },
+            out);
+    }
 }
 
 // Lists the covered samples of some blocks pixel by pixel in index order, and numbers the triangles as they come.
-void TileShader::collect(const SampleTable& samples, const Tile& tile, const Hits& hits, int first_block,
-                         int last_block, TileShade& out) {
+void TileShader::collect(const ShadingScene& scene, const SampleTable& samples, const Tile& tile, const Hits& hits,
+                         int first_block, int last_block, TileShade& out) {
     entries_.clear();
     locals_.clear();
     counts_.clear();
     triangles_.clear();
+    misses_.clear();
     std::fill(table_.begin(), table_.end(), 0u);
     const int slots = samples.slots();
     static thread_local SampleOrder order;
@@ -240,6 +308,7 @@ void TileShader::collect(const SampleTable& samples, const Tile& tile, const Hit
                 const std::uint32_t triangle = hits.triangle[at];
                 if (triangle == kNoTriangle) {
                     out.point_of_sample[at] = kBackground;
+                    if (scene.has_background()) misses_.push_back({static_cast<std::uint16_t>(pixel), slot[index]});
                     continue;
                 }
                 const std::uint32_t local = !locals_.empty() && triangles_[locals_.back()] == triangle
@@ -250,6 +319,27 @@ void TileShader::collect(const SampleTable& samples, const Tile& tile, const Hit
                 entries_.push_back({static_cast<std::uint16_t>(pixel), slot[index]});
             }
         }
+    }
+}
+
+// The mean of what a pixel's misses see of the surroundings, each along its own ray.
+void TileShader::shade_background(const ShadingScene& scene, const SampleTable& samples, const Tile& tile,
+                                  TileShade& out) {
+    const CellSamples cell(samples, tile);
+    const CellCentre centre = cell_centre(scene.frame().view, tile.cell_x(), tile.cell_y());
+    for (std::size_t begin = 0; begin < misses_.size();) {
+        const std::uint16_t pixel = misses_[begin].pixel;
+        glm::vec3 sum(0.0f);
+        float count = 0.0f;
+        for (; begin < misses_.size() && misses_[begin].pixel == pixel; ++begin) {
+            const LocalSample s = cell.at(pixel, misses_[begin].slot);
+            sum += scene.background(centre.x + s.hx, centre.y + s.hy, s.u, s.v, s.t);
+            count += 1.0f;
+            out.point_of_sample[hit_index(pixel, misses_[begin].slot, samples.slots())] =
+                static_cast<std::uint32_t>(out.colors.size());
+        }
+        out.colors.push_back(contained(sum / count));
+        out.colors.back().w = 0.0f;
     }
 }
 

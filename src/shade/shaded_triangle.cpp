@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <numbers>
+#include <optional>
 
+#include "frame/opacity.h"
 #include "shade/brdf.h"
 
 namespace pentaprism {
@@ -42,7 +46,7 @@ glm::vec3 visible_normal(const glm::vec3& normal, const glm::vec3& face, const g
 
 ShadedTriangle::ShadedTriangle(const ShadingScene& scene, std::uint32_t triangle)
     : scene_(scene), part_(scene.part_of(triangle)), vertices_(scene.frame().vertices(triangle)) {
-    if (part_.material->textured) project(triangle);
+    if (part_.material->textured || scene.options().rate == ShadingRate::kDecoupled) project(triangle);
     const glm::vec3 &a = part_.positions[vertices_[0]], &b = part_.positions[vertices_[1]],
                     &c = part_.positions[vertices_[2]];
     face_normal_ = normalized_or(glm::cross(b - a, c - a), glm::vec3(0.0f));
@@ -73,17 +77,18 @@ void ShadedTriangle::project(std::uint32_t triangle) {
     const double scale = determinant != 0.0 ? 1.0 / determinant : 0.0;  // edge-on: no derivatives
     projection_.by_x = scale * glm::dvec3(rows[0].x, rows[1].x, rows[2].x);
     projection_.by_y = scale * glm::dvec3(rows[0].y, rows[1].y, rows[2].y);
+    projection_.by_1 = scale * glm::dvec3(rows[0].z, rows[1].z, rows[2].z);
 }
 
 // One evaluation stands for all samples of its pixel: it is filtered over the pixel (variance 1/12 each way), over the
 // whole shutter (1/12) and over the lens disk (1/4 each way).
-TextureFootprint ShadedTriangle::footprint(const glm::vec3& barycentrics, int set) const {
+TextureFootprint ShadedTriangle::footprint(const glm::vec3& barycentrics, int set, const ShadingCell& cell) const {
     const std::vector<glm::vec2>& uvs = part_.primitive->texcoords[set];
     if (uvs.empty()) return {};
     const glm::dvec3 b(barycentrics);
     const glm::dvec3* corner = projection_.corner;
     const glm::dvec3 point = b.x * corner[0] + b.y * corner[1] + b.z * corner[2];
-    if (!(point.z > 0.0)) return {};
+    if (!(point.z > 0.0) || scene_.options().texture_filter == TextureFilter::kOff) return {};
     const glm::dvec3 dx =
         point.z * (projection_.by_x - b * (projection_.by_x.x + projection_.by_x.y + projection_.by_x.z));
     const glm::dvec3 dy =
@@ -98,11 +103,66 @@ TextureFootprint ShadedTriangle::footprint(const glm::vec3& barycentrics, int se
     const float ratio = static_cast<float>(scene_.frame().view.lens.ratio);
 
     TextureFootprint footprint;
-    const float lens = 0.25f * coc * coc;
-    footprint.add(by_x, 1.0f / 12.0f + lens);
-    footprint.add(by_y, 1.0f / 12.0f + lens * ratio * ratio);
-    footprint.add(by_x * velocity.x + by_y * velocity.y, 1.0f / 12.0f);
+    const ShadingOptions& options = scene_.options();
+    footprint.add(by_x * cell.along.x + by_y * cell.along.y, 1.0f / 12.0f);
+    footprint.add(by_x * cell.across.x + by_y * cell.across.y, 1.0f / 12.0f);
+    if (options.texture_filter == TextureFilter::kPixel) return footprint;
+    // Where each sample picks its own evaluation, the samples average over motion and lens themselves; each stands for
+    // the share of the blur that falls to it, of width N^-0.4 (measured; four dimensions would say -0.25 to -0.5).
+    const float share = options.rate == ShadingRate::kPixel ? 1.0f : std::pow(static_cast<float>(options.spp), -0.8f);
+    const float lens = 0.25f * coc * coc * share;
+    footprint.add(by_x, lens);
+    footprint.add(by_y, lens * ratio * ratio);
+    footprint.add(by_x * velocity.x + by_y * velocity.y, share / 12.0f);
     return footprint;
+}
+
+ShadingCell ShadedTriangle::cell_of(const glm::vec3& barycentrics) const {
+    constexpr double kBlurShare = 0.25;
+    constexpr int kCoarsest = 6, kDirections = 16;
+    const glm::dvec3 b(barycentrics);
+    const glm::dvec3* corner = projection_.corner;
+    const glm::dvec3 point = b.x * corner[0] + b.y * corner[1] + b.z * corner[2];
+    if (!(point.z >= scene_.frame().view.w_near())) return {};
+    const glm::dvec2 place = glm::dvec2(point) / point.z;
+    if (!(std::max(std::abs(place.x), std::abs(place.y)) < 32768.0)) return {};
+    const glm::dvec3 motion = b.x * projection_.motion[0] + b.y * projection_.motion[1] + b.z * projection_.motion[2];
+    const glm::dvec2 velocity = (glm::dvec2(motion) - motion.z * place) / point.z;
+    const double coc = glm::dot(b, projection_.coc) / point.z, lens2 = 3.0 * coc * coc;
+    // floor(log2(share * length)), from the squared length.
+    const auto level = [kMost = kCoarsest](double length2) {
+        const double cells2 = kBlurShare * kBlurShare * length2;
+        return cells2 >= 4.0 && std::isfinite(cells2) ? std::min(std::ilogb(cells2) / 2, kMost) : 0;
+    };
+    const int longer = level(glm::dot(velocity, velocity) + lens2), shorter = level(lens2);
+    int direction = 0;
+    if (longer != shorter) {
+        const double turn = std::atan2(velocity.y, velocity.x) / std::numbers::pi * kDirections;
+        direction = (static_cast<int>(std::lround(turn)) + 2 * kDirections) % kDirections;
+    }
+    const double angle = std::numbers::pi * direction / kDirections;
+    const double c = direction == 0 ? 1.0 : std::cos(angle), sine = direction == 0 ? 0.0 : std::sin(angle);
+    const double width = std::ldexp(1.0, longer), height = std::ldexp(1.0, shorter);
+    const double column = std::floor((c * place.x + sine * place.y) / width);
+    const double row = std::floor((c * place.y - sine * place.x) / height);
+    ShadingCell cell;
+    const auto bits = [](double x) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(x) + (1 << 20)); };
+    cell.key = (std::uint64_t{1} << 62) | (static_cast<std::uint64_t>(direction) << 52) |
+               (static_cast<std::uint64_t>(longer) << 49) | (static_cast<std::uint64_t>(shorter) << 46) |
+               (bits(column) << 22) | bits(row);
+    const double x = (column + 0.5) * width, y = (row + 0.5) * height;
+    cell.centre = {c * x - sine * y, sine * x + c * y};
+    cell.along = glm::vec2(c * width, sine * width);
+    cell.across = glm::vec2(-sine * height, c * height);
+    return cell;
+}
+
+glm::vec3 ShadedTriangle::barycentrics_at(const glm::dvec2& place) const {
+    const glm::dvec3 over_w = projection_.by_x * place.x + projection_.by_y * place.y + projection_.by_1;
+    const double sum = over_w.x + over_w.y + over_w.z;
+    const glm::dvec3 b = glm::max(over_w / sum, glm::dvec3(0.0));
+    const double total = b.x + b.y + b.z;
+    return total > 0.0 && std::isfinite(total) ? glm::vec3(b / total) : glm::vec3(1.0f / 3.0f);
 }
 
 // How far the smooth surface bulges out over the facet, along the smooth normal: a parabola over each edge that follows
@@ -120,7 +180,82 @@ glm::vec3 ShadedTriangle::smooth_offset(const glm::vec3& b, const glm::vec3& nor
     return height * normal;
 }
 
-void ShadedTriangle::shade(const glm::vec3& b, bool front, LitColor& out) const {
+namespace {
+
+// The normal of a texel, x and y scaled: unit, or as long as filtering left it.
+glm::vec3 decoded_normal(const glm::vec4& texel, float scale) {
+    return {(2.0f * texel.x - 1.0f) * scale, (2.0f * texel.y - 1.0f) * scale, 2.0f * texel.z - 1.0f};
+}
+
+// What a surface does with the light of one direction.
+class Surface {
+  public:
+    Surface(const Brdf& brdf, float roughness, const glm::vec3& normal, const glm::vec3& to_eye)
+        : brdf_(brdf), roughness_(roughness), normal_(normal), to_eye_(to_eye) {}
+
+    void add_coat(float share, float roughness, const glm::vec3& normal) {
+        coat_normal_ = normal;
+        coat_roughness_ = roughness;
+        coat_ = Coat(share, roughness, glm::dot(normal, to_eye_));
+        below_ *= 1.0f - coat_->albedo();
+    }
+    void add_sheen(const glm::vec3& color, float roughness) {
+        sheen_ = Sheen(color, roughness, glm::dot(normal_, to_eye_));
+        sheen_scale_ = below_;
+        const glm::vec3& albedo = sheen_->albedo();
+        below_ *= 1.0f - std::max({albedo.x, albedo.y, albedo.z});
+    }
+
+    // Reflected radiance over irradiance perpendicular to the ray; black from behind.
+    glm::vec3 reflected(const glm::vec3& to_light) const {
+        const glm::vec3 half = normalized_or(to_light + to_eye_, normal_);
+        const float cos_difference = glm::dot(to_eye_, half);
+        const auto cos_half = [&](const glm::vec3& n) { return std::max(0.0f, glm::dot(n, half)); };
+        glm::vec3 color(0.0f);
+        if (const float cos_light = glm::dot(normal_, to_light); cos_light > 0.0f) {
+            color = below_ * brdf_.reflected(cos_light, cos_half(normal_), cos_difference);
+            if (sheen_) color += sheen_scale_ * sheen_->reflected(cos_light, cos_half(normal_));
+        }
+        if (!coat_) return color;
+        if (const float cos_light = glm::dot(coat_normal_, to_light); cos_light > 0.0f)
+            color += coat_->reflected(cos_light, cos_half(coat_normal_), cos_difference);
+        return color;
+    }
+    // The same of light from all sides.
+    glm::vec3 ambient(const Lighting& lighting) const {
+        const auto mirrored = [&](const glm::vec3& n) { return 2.0f * glm::dot(n, to_eye_) * n - to_eye_; };
+        glm::vec3 color = brdf_.diffuse_albedo() * lighting.matte(normal_) +
+                          brdf_.specular_albedo() * lighting.shiny(mirrored(normal_), roughness_);
+        color *= below_;
+        if (sheen_) color += sheen_scale_ * sheen_->albedo() * lighting.matte(normal_);
+        if (coat_) color += coat_->albedo() * lighting.shiny(mirrored(coat_normal_), coat_roughness_);
+        return color;
+    }
+
+    // Of what is not reflected by a coat or by fibres.
+    float below() const { return below_; }
+
+  private:
+    Brdf brdf_;
+    float roughness_, coat_roughness_ = 0.0f;
+    glm::vec3 normal_, to_eye_, coat_normal_{0.0f};
+    std::optional<Coat> coat_;
+    std::optional<Sheen> sheen_;
+    float below_ = 1.0f, sheen_scale_ = 1.0f;
+};
+
+}  // namespace
+
+// Mapped normals live in the frame (tangent, bitangent, normal) of the interpolated vectors as they are; the result
+// alone is made unit (as MikkTSpace asks).
+glm::vec3 ShadedTriangle::mapped_normal(const glm::vec3& b, const glm::vec3& map) const {
+    const glm::vec3 normal = interpolate(part_.normals, vertices_, b);
+    const glm::vec4 tangent = interpolate(part_.tangents, vertices_, b);
+    const glm::vec3 along(tangent);
+    return map.x * along + map.y * (glm::cross(normal, along) * tangent.w) + map.z * normal;
+}
+
+void ShadedTriangle::shade(const glm::vec3& b, bool front, const ShadingCell& cell, LitColor& out) const {
     out.shadowed.clear();
     out.rest = glm::vec3(0.0f);
     const BoundMaterial& bound = *part_.material;
@@ -133,62 +268,84 @@ void ShadedTriangle::shade(const glm::vec3& b, bool front, LitColor& out) const 
         for (int set = 0; set < 2; ++set) {
             if (primitive.texcoords[set].empty()) continue;
             uv[set] = interpolate(primitive.texcoords[set], vertices_, b);
-            footprints[set] = footprint(b, set);
+            footprints[set] = footprint(b, set, cell);
         }
     const auto look_up = [&](const BoundTexture& texture) {
-        return texture.sample(uv[texture.set], footprints[texture.set]);
+        return texture.pyramid ? texture.sample(uv[texture.set], footprints[texture.set]) : glm::vec4(1.0f);
     };
 
-    glm::vec3 base(material.base_color);
-    if (bound.base_color.pyramid) base *= glm::vec3(look_up(bound.base_color));
+    glm::vec3 base = glm::vec3(material.base_color) * glm::vec3(look_up(bound.base_color));
     if (!primitive.colors.empty()) base *= glm::vec3(interpolate(primitive.colors, vertices_, b));
     if (material.unlit) {
         out.rest = base;
         return;
     }
 
-    float metallic = material.metallic, roughness = material.roughness;
-    if (bound.metallic_roughness.pyramid) {
-        const glm::vec4 value = look_up(bound.metallic_roughness);
-        roughness *= value.y;
-        metallic *= value.z;
-    }
+    const glm::vec4 metallic_roughness = look_up(bound.metallic_roughness);
+    const float metallic = material.metallic * metallic_roughness.z;
+    const float roughness = material.roughness * metallic_roughness.y;
     const glm::vec3 position = interpolate(part_.positions, vertices_, b);
-    const glm::vec3 to_eye = scene_.to_eye(position);
-    glm::vec3 normal = normalized_or(interpolate(part_.normals, vertices_, b), to_eye);
-    if (!front) normal = -normal;
-    normal = visible_normal(normal, front ? face_normal_ : -face_normal_, to_eye);
+    const glm::vec3 to_eye = scene_.to_eye(position), face = front ? face_normal_ : -face_normal_;
+    const auto seen = [&](const glm::vec3& n) {
+        const glm::vec3 unit = normalized_or(n, to_eye);
+        return visible_normal(front ? unit : -unit, face, to_eye);
+    };
+    const bool mapped = !part_.tangents.empty();
+    const glm::vec3 smooth = seen(interpolate(part_.normals, vertices_, b));
+    const glm::vec3 normal = bound.normal.pyramid && mapped
+                                 ? seen(mapped_normal(b, decoded_normal(look_up(bound.normal), material.normal_scale)))
+                                 : smooth;
 
-    const Brdf brdf(base, metallic, roughness, glm::dot(normal, to_eye));
+    DielectricReflection reflection;
+    if (material.ior != 1.5f || material.specular != 1.0f || material.specular_color != glm::vec3(1.0f) ||
+        bound.specular.pyramid || bound.specular_color.pyramid)
+        reflection = DielectricReflection::of(material.ior, material.specular * look_up(bound.specular).w,
+                                              material.specular_color * glm::vec3(look_up(bound.specular_color)));
+    float passed = 0.0f;  // of the light that would be scattered below the surface
+    if (material.transmission > 0.0f)
+        passed = material.transmission * look_up(bound.transmission).x * (1.0f - metallic);
+    Brdf brdf(base, metallic, roughness, glm::dot(normal, to_eye), reflection, scene_.options().brdf);
+    brdf.scale_diffuse(1.0f - passed);
+    Surface surface(brdf, roughness, normal, to_eye);
+    if (bound.layered) {
+        if (const float coat = material.clearcoat * look_up(bound.coat).x; coat > 0.0f) {
+            const glm::vec3 coat_normal = bound.coat_normal.pyramid && mapped
+                                              ? seen(mapped_normal(b, decoded_normal(look_up(bound.coat_normal),
+                                                                                     material.clearcoat_normal_scale)))
+                                              : smooth;
+            surface.add_coat(coat, material.clearcoat_roughness * look_up(bound.coat_roughness).y, coat_normal);
+        }
+        const glm::vec3 sheen = material.sheen_color * glm::vec3(look_up(bound.sheen_color));
+        if (sheen != glm::vec3(0.0f))
+            surface.add_sheen(sheen, material.sheen_roughness * look_up(bound.sheen_roughness).w);
+    }
+    // The samples that see through say nothing of what the surface reflects: the others speak for them.
+    const float scale = material.transmission > 0.0f
+                            ? 1.0f / (1.0f - see_through(material.transmission * look_up(bound.transmission).x))
+                            : 1.0f;
+
     const Lighting& lighting = scene_.lighting();
-    glm::vec3 color = material.emissive;
-    if (bound.emissive.pyramid) color *= glm::vec3(look_up(bound.emissive));
+    glm::vec3 color = surface.below() * material.emissive * glm::vec3(look_up(bound.emissive));
     for (std::size_t i = 0; i < lighting.lights.size(); ++i) {
         const Incoming from = incoming(lighting.lights[i], position);
-        const float cos_light = glm::dot(normal, from.to_light);
-        if (!(cos_light > 0.0f) || from.irradiance == glm::vec3(0.0f)) continue;
-        const bool shadowed = scene_.shadows().casts(i);
-        const glm::vec3 half = normalized_or(from.to_light + to_eye, normal);
-        const glm::vec3 reflected =
-            from.irradiance * brdf.reflected(cos_light, std::max(0.0f, glm::dot(normal, half)), glm::dot(to_eye, half));
-        if (!shadowed) {
+        if (from.irradiance == glm::vec3(0.0f)) continue;
+        const glm::vec3 reflected = from.irradiance * surface.reflected(from.to_light);
+        if (reflected == glm::vec3(0.0f)) continue;
+        if (!scene_.shadows().casts(i)) {
             color += reflected;
             continue;
         }
-        const float facing = (front ? 1.0f : -1.0f) * glm::dot(face_normal_, from.to_light);
-        const float lift = std::clamp(1.0f - facing / kGrazing, 0.0f, 1.0f);
-        out.shadowed.push_back({static_cast<std::uint32_t>(i), reflected,
-                                lift > 0.0f ? lift * smooth_offset(b, normal, front) : glm::vec3(0.0f)});
+        const float lift = std::clamp(1.0f - glm::dot(face, from.to_light) / kGrazing, 0.0f, 1.0f);
+        out.shadowed.push_back({static_cast<std::uint32_t>(i), scale * reflected,
+                                lift > 0.0f ? lift * smooth_offset(b, smooth, front) : glm::vec3(0.0f)});
     }
     if (lighting.ambient()) {
-        const glm::vec3 mirrored = 2.0f * glm::dot(normal, to_eye) * normal - to_eye;
-        glm::vec3 ambient = brdf.diffuse_albedo() * lighting.ambient_towards(normal) +
-                            brdf.specular_albedo() * lighting.ambient_towards(mirrored);
+        glm::vec3 ambient = surface.ambient(lighting);
         if (bound.occlusion.pyramid)
             ambient *= 1.0f + material.occlusion_strength * (look_up(bound.occlusion).x - 1.0f);
         color += ambient;
     }
-    out.rest = color;
+    out.rest = scale * color;
     out.position = position;
 }
 

@@ -25,24 +25,44 @@ struct LitColor {
     glm::vec3 position{0.0f};  ///< relative to the eye, at mid-shutter
 };
 
+/// A piece of a triangle that is shaded once: a rectangle on the screen as seen at mid-shutter through the middle of
+/// the lens, where motion and lens do not blur; larger where they do, as what is blurred holds no detail (after
+/// Vaidyanathan, Toth, Salvi, Boulos, Lefohn 2012; here for each material point, by powers of two). Sides are a quarter
+/// of the blur, along the motion and across it, and no less than a pixel: the grid of pixels itself where there is no
+/// blur.
+struct ShadingCell {
+    std::uint64_t key = 0;                            ///< 0: none; the sample is shaded by itself
+    glm::dvec2 centre{0.0};                           ///< pixels from the middle of the picture, y up
+    glm::vec2 along{1.0f, 0.0f}, across{0.0f, 1.0f};  ///< sides, pixels
+};
+
 class ShadedTriangle {
   public:
     ShadedTriangle(const ShadingScene& scene, std::uint32_t triangle);
 
     /// Linear colour of the point with these barycentrics (inside the triangle, sum 1) seen from the front or the back.
-    void shade(const glm::vec3& barycentrics, bool front, LitColor& out) const;
+    /// The texture is averaged over the cell's sides.
+    void shade(const glm::vec3& barycentrics, bool front, const ShadingCell& cell, LitColor& out) const;
+
+    /// The cell that holds the material point with these barycentrics.
+    ShadingCell cell_of(const glm::vec3& barycentrics) const;
+
+    /// Barycentrics of the place (of the triangle's plane, moved into the triangle) that is seen at these pixels from
+    /// the middle of the picture at mid-shutter.
+    glm::vec3 barycentrics_at(const glm::dvec2& place) const;
 
   private:
     /// The triangle on the screen: pixels, at mid-shutter and through the middle of the lens.
     struct Projection {
-        glm::dvec3 corner[3];   // x, y, w
-        glm::dvec3 by_x, by_y;  // columns of the inverse of the corners' matrix: change of barycentrics over w
-        glm::dvec3 motion[3];   // of each corner over the whole shutter
-        glm::dvec3 coc;         // c of each corner
+        glm::dvec3 corner[3];         // x, y, w
+        glm::dvec3 by_x, by_y, by_1;  // columns of the inverse of the corners' matrix: barycentrics over w
+        glm::dvec3 motion[3];         // of each corner over the whole shutter
+        glm::dvec3 coc;               // c of each corner
     };
     void project(std::uint32_t triangle);
+    glm::vec3 mapped_normal(const glm::vec3& barycentrics, const glm::vec3& map) const;
     glm::vec3 smooth_offset(const glm::vec3& barycentrics, const glm::vec3& normal, bool front) const;
-    TextureFootprint footprint(const glm::vec3& barycentrics, int set) const;
+    TextureFootprint footprint(const glm::vec3& barycentrics, int set, const ShadingCell& cell) const;
 
     const ShadingScene& scene_;
     const ShadedPart& part_;

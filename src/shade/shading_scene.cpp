@@ -9,6 +9,8 @@
 namespace pentaprism {
 namespace {
 
+constexpr int kCameraKnots = 8;
+
 BoundTexture bind(const Pyramid* pyramid, const TextureRef& ref) {
     return {pyramid, ref, uv_matrix(ref), ref.texcoord == 1 ? 1 : 0};
 }
@@ -16,14 +18,29 @@ BoundTexture bind(const Pyramid* pyramid, const TextureRef& ref) {
 BoundMaterial bind(const Material& material, const Textures* textures) {
     BoundMaterial bound;
     bound.material = material;
+    bound.layered =
+        material.clearcoat > 0.0f || material.sheen_color != glm::vec3(0.0f) || material.transmission > 0.0f;
     if (!textures) return bound;
-    bound.base_color = bind(textures->color(material.base_color_texture), material.base_color_texture);
-    bound.emissive = bind(textures->color(material.emissive_texture), material.emissive_texture);
-    bound.metallic_roughness =
-        bind(textures->data(material.metallic_roughness_texture), material.metallic_roughness_texture);
-    bound.occlusion = bind(textures->data(material.occlusion_texture), material.occlusion_texture);
-    bound.textured = bound.base_color.pyramid || bound.emissive.pyramid || bound.metallic_roughness.pyramid ||
-                     bound.occlusion.pyramid;
+    const auto color = [&](BoundTexture& out, const TextureRef& ref) { out = bind(textures->color(ref), ref); };
+    const auto data = [&](BoundTexture& out, const TextureRef& ref) { out = bind(textures->data(ref), ref); };
+    color(bound.base_color, material.base_color_texture);
+    color(bound.emissive, material.emissive_texture);
+    color(bound.specular_color, material.specular_color_texture);
+    color(bound.sheen_color, material.sheen_color_texture);
+    data(bound.metallic_roughness, material.metallic_roughness_texture);
+    data(bound.normal, material.normal_texture);
+    data(bound.occlusion, material.occlusion_texture);
+    data(bound.specular, material.specular_texture);
+    data(bound.coat, material.clearcoat_texture);
+    data(bound.coat_roughness, material.clearcoat_roughness_texture);
+    data(bound.coat_normal, material.clearcoat_normal_texture);
+    data(bound.sheen_roughness, material.sheen_roughness_texture);
+    data(bound.transmission, material.transmission_texture);
+    for (const BoundTexture* texture :
+         {&bound.base_color, &bound.emissive, &bound.specular_color, &bound.sheen_color, &bound.metallic_roughness,
+          &bound.normal, &bound.occlusion, &bound.specular, &bound.coat, &bound.coat_roughness, &bound.coat_normal,
+          &bound.sheen_roughness, &bound.transmission})
+        bound.textured = bound.textured || texture->pyramid;
     return bound;
 }
 
@@ -35,16 +52,30 @@ void pose_part(const Frame& frame, const Part& part, const glm::dvec3& eye, Shad
     pose_positions(*frame.scene, frame.middle, part.placement, world);
     pose_normals(*frame.scene, frame.middle, part.placement, out.normals);
     for (std::size_t i = 0; i < n; ++i) out.positions[i] = glm::vec3(world[i] - eye);
+    if (!frame.textures) return;
+    const auto tangents = frame.textures->tangents(part.placement.mesh, part.placement.primitive);
+    out.tangents.resize(tangents.size());
+    if (!tangents.empty())
+        pose_tangents(*frame.scene, frame.middle, part.placement, tangents, part.mirrored, out.tangents);
 }
 
 }  // namespace
 
-ShadingScene::ShadingScene(const Frame& frame, const ShadingOptions& options) : frame_(frame) {
+ShadingScene::ShadingScene(const Frame& frame, const ShadingOptions& options) : frame_(frame), options_(options) {
     const Scene& scene = *frame.scene;
     const glm::dmat4 camera_to_world = glm::inverse(world_to_camera(frame.view, frame.middle));
     const glm::dvec3 eye(camera_to_world[3]);
     backwards_ = glm::vec3(glm::normalize(glm::dvec3(camera_to_world[2])));
-    lighting_ = pose_lights(frame, eye);
+    lighting_ = pose_lights(frame, eye, options.environment.get());
+    if (options.environment) {
+        const bool turns = frame.view.camera_node != kNone && frame.view.shutter.close > frame.view.shutter.open;
+        for (int k = 0; turns && k <= kCameraKnots; ++k) {
+            const double time = frame.view.shutter.at(static_cast<double>(k) / kCameraKnots);
+            const Pose pose = evaluate(scene, frame.animations, time);
+            cameras_.emplace_back(glm::dmat3(glm::inverse(world_to_camera(frame.view, pose))));
+        }
+        if (!turns) cameras_.emplace_back(glm::dmat3(camera_to_world));
+    }
     shadows_ = std::make_unique<Shadows>(frame, lighting_, eye, options.shadows);
 
     materials_.reserve(scene.materials.size() + 1);
@@ -58,6 +89,21 @@ ShadingScene::ShadingScene(const Frame& frame, const ShadingOptions& options) : 
         parts_[i].material = part.material == kNone ? &materials_.back() : &materials_[part.material];
         pose_part(frame, part, eye, parts_[i]);
     });
+}
+
+glm::vec3 ShadingScene::background(float gx, float gy, float u, float v, float t) const {
+    const View& view = frame_.view;
+    glm::vec3 ray(0.0f, 0.0f, -1.0f);
+    if (view.perspective) {
+        const float b = static_cast<float>(view.lens.b);
+        ray = {(gx - u * b) / static_cast<float>(view.fx), (gy - v * b) / static_cast<float>(view.fy), -1.0f};
+    }
+    const float at = t * static_cast<float>(cameras_.size() - 1);
+    const std::size_t knot = std::min(static_cast<std::size_t>(at), cameras_.size() - 1);
+    glm::vec3 direction = cameras_[knot] * ray;
+    if (knot + 1 < cameras_.size())
+        direction += (at - static_cast<float>(knot)) * (cameras_[knot + 1] * ray - direction);
+    return options_.environment->radiance(glm::normalize(direction));
 }
 
 float ShadingScene::shadow_texel(const glm::vec3& position) const {

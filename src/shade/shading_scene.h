@@ -17,8 +17,11 @@ namespace pentaprism {
 
 struct BoundMaterial {
     Material material;
-    BoundTexture base_color, metallic_roughness, occlusion, emissive;
+    BoundTexture base_color, metallic_roughness, normal, occlusion, emissive;
+    BoundTexture specular, specular_color, coat, coat_roughness, coat_normal, sheen_color, sheen_roughness,
+        transmission;
     bool textured = false;  ///< any of them
+    bool layered = false;   ///< has a coat, a sheen or lets light through
 };
 
 /// A placed primitive at mid-shutter.
@@ -27,10 +30,20 @@ struct ShadedPart {
     const BoundMaterial* material = nullptr;
     std::vector<glm::vec3> positions;  ///< of each vertex, relative to the eye: world axes
     std::vector<glm::vec3> normals;    ///< unit
+    std::vector<glm::vec4> tangents;   ///< where the material has a normal map
 };
+
+/// What shares one evaluation: the samples of a pixel and a triangle, those that see a cell of the triangle
+/// (shaded_triangle.h), or none.
+enum class ShadingRate : std::uint8_t { kPixel, kDecoupled, kSample };
 
 struct ShadingOptions {
     ShadowMode shadows = ShadowMode::kMoving;
+    BrdfModel brdf = BrdfModel::kGltf;
+    TextureFilter texture_filter = TextureFilter::kFull;
+    ShadingRate rate = ShadingRate::kPixel;
+    int spp = 1;
+    std::shared_ptr<const Environment> environment;
 };
 
 class ShadingScene {
@@ -42,22 +55,31 @@ class ShadingScene {
 
     const Frame& frame() const { return frame_; }
     const ShadedPart& part_of(std::uint32_t triangle) const { return parts_[frame_.part_of[triangle]]; }
+    const ShadingOptions& options() const { return options_; }
     const Lighting& lighting() const { return lighting_; }
     const Shadows& shadows() const { return *shadows_; }
 
     /// How large a texel of a shadow map should be there, metres: a pixel, and a quarter of what defocus blurs.
     float shadow_texel(const glm::vec3& position) const;
 
+    /// What is seen where nothing is hit; false: nothing.
+    bool has_background() const { return options_.environment != nullptr; }
+    /// At (gx, gy) pixels from the middle of the picture, y up, through (u, v) of the lens at time t: what is
+    /// infinitely far away.
+    glm::vec3 background(float gx, float gy, float u, float v, float t) const;
+
     /// Unit vector from a point to the eye; for an orthographic camera the same everywhere.
     glm::vec3 to_eye(const glm::vec3& position) const;
 
   private:
     const Frame& frame_;
+    ShadingOptions options_;
     std::vector<BoundMaterial> materials_;  // the scene's, then the default one
     std::vector<ShadedPart> parts_;
     Lighting lighting_;
     std::unique_ptr<const Shadows> shadows_;
-    glm::vec3 backwards_;  // against the direction of view
+    std::vector<glm::mat3> cameras_;  // to world, at the knots of the shutter; for backgrounds
+    glm::vec3 backwards_;             // against the direction of view
 };
 
 }  // namespace pentaprism

@@ -15,8 +15,6 @@ done <<'END'
 --sampler sobol
 --aov depth,albedo
 --aov ste
---sharp
---dataset out
 --samples dump
 --resume
 --shard 1/4

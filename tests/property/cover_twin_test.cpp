@@ -1,14 +1,12 @@
 // The vector kernels of every CPU target, those for samples that share lens position and time, and the scalar path with
 // and without culling, give the same depths and triangles bit for bit.
-#include <cstdlib>
 #include <cstring>
 #include <gtest/gtest.h>
 #include <map>
-#include <pentaprism/error.h>
 #include <string>
 
-#include "base/cpu.h"
 #include "render/visibility.h"
+#include "support/isa.h"
 #include "support/soup.h"
 
 namespace pentaprism {
@@ -16,37 +14,11 @@ namespace {
 
 using support::effort;
 using support::Hard;
+using support::has_isa;
 using support::make_soup;
 using support::Random;
 using support::Soup;
-
-// The CPU target of the environment while this lives.
-class UseIsa {
-  public:
-    explicit UseIsa(const char* name) {
-        if (const char* old = std::getenv("PENTAPRISM_ISA")) old_ = old;
-        setenv("PENTAPRISM_ISA", name, 1);
-    }
-    ~UseIsa() {
-        if (old_.empty())
-            unsetenv("PENTAPRISM_ISA");
-        else
-            setenv("PENTAPRISM_ISA", old_.c_str(), 1);
-    }
-
-  private:
-    std::string old_;
-};
-
-bool has_isa(const char* name) {
-    const UseIsa use(name);
-    try {
-        cpu_isa();
-        return true;
-    } catch (const Error&) {
-        return false;
-    }
-}
+using support::UseIsa;
 
 const SampleTable& table(int spp, Grouping grouping, double ratio, SamplePattern pattern = SamplePattern::kFree) {
     static std::map<std::tuple<int, Grouping, double, SamplePattern>, SampleTable> tables;

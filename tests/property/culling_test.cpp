@@ -113,6 +113,8 @@ TEST(Culling, KeepsEverySampleThatTheExactTestAccepts) {
             EXPECT_GT(tally.lost_at_pixels * 100, tally.asked_at_pixels)
                 << test.name << " is said to lose samples; " << tally.lost_at_pixels << " of " << tally.asked_at_pixels
                 << " is not even a percent";
+            std::printf("%s loses %.1f %% over pixels\n", test.name,
+                        100.0 * static_cast<double>(tally.lost_at_pixels) / static_cast<double>(tally.asked_at_pixels));
         }
         RecordProperty(test.name, std::to_string(tally.lost) + " of " + std::to_string(tally.asked));
     }

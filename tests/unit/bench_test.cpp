@@ -62,7 +62,13 @@ TEST(BenchEffects, AreTheSevenOfTheContract) {
     for (const BenchEffect& effect : bench_effects()) names.push_back(effect.name);
     EXPECT_EQ(names,
               (std::vector<std::string>{"still", "motion", "motion-x2", "defocus", "defocus-x2", "both", "both-x2"}));
-    EXPECT_THROW(find_effect("Motion"), Error);
+    EXPECT_EQ(find_effect("both-x8").motion, 8.0);
+    EXPECT_EQ(find_effect("both-x8").defocus, 8.0);
+    EXPECT_EQ(find_effect("motion-x0.5").motion, 0.5);
+    EXPECT_EQ(find_effect("motion-x0.5").defocus, 0.0);
+    for (const char* name : {"Motion", "motion-x", "motion-x0", "motion-x-1", "motion-xinf", "motion-xnan",
+                             "motion-x65", "motion-x2x", "still-x2", "both-x2-x2", "both-x2 "})
+        EXPECT_THROW(find_effect(name), Error) << name;
 }
 
 TEST(BenchEffects, DoublingDoublesTheShutterAndTheLensAndKeepsTheFocus) {
@@ -107,6 +113,8 @@ TEST(Bench, CountsWhatTheRendererCountsAndLosesNothing) {
     for (const BenchRow& row : report.rows) {
         EXPECT_EQ(row.false_culls, 0) << row.method;
         EXPECT_EQ(row.samples, 96 * 64 * 4);
+        EXPECT_GT(row.covered, 0);
+        EXPECT_GT(row.tested, row.covered);
         EXPECT_GT(row.frame_ms, 0.0);
         EXPECT_NEAR(row.setup_ms + row.test_ms, row.frame_ms, 1e-9);
         EXPECT_GT(row.peak_mb, 1.0);
@@ -123,6 +131,31 @@ TEST(Bench, CountsWhatTheRendererCountsAndLosesNothing) {
     EXPECT_EQ(report.cells[0].motion_px, 0.0);
     EXPECT_GT(report.cells[1].motion_px, 0.0);
     EXPECT_GT(report.cells[1].blur_px, 0.0);
+}
+
+TEST(Bench, OtherWaysToSeeAreComparedOnTheirOwnSamples) {
+    BenchPlan plan = small_plan();
+    plan.effects = {"both"};
+    plan.methods = {"accumulation", "interleaved", "micropolygon"};
+    const BenchReport report = run_bench(plan);
+    ASSERT_EQ(report.rows.size(), 3u);
+    for (const BenchRow& row : report.rows) {
+        EXPECT_EQ(row.own_arithmetic, row.method == "micropolygon");
+        EXPECT_GT(row.tested, row.covered) << row.method;
+        EXPECT_LE(row.false_culls, row.own_arithmetic ? row.samples / 500 : 0) << row.method;
+    }
+}
+
+TEST(Bench, ATestAsPrintedIsSeenToLoseSamples) {
+    BenchPlan plan = small_plan();
+    plan.scenes = {"builtin:car"};
+    plan.effects = {"both"};
+    plan.methods = {"clip-space-as-printed", "clip-space"};
+    const BenchReport report = run_bench(plan);
+    EXPECT_FALSE(report.rows[0].conservative);
+    EXPECT_GT(report.rows[0].false_culls, 100);
+    EXPECT_TRUE(report.rows[1].conservative);
+    EXPECT_EQ(report.rows[1].false_culls, 0);
 }
 
 TEST(Bench, APartOfTheTilesIsAlwaysTheSameAndNeedsAboutTheTestsAskedFor) {

@@ -90,6 +90,43 @@ TEST(Brdf, BlackDielectricsStillShine) {
     EXPECT_NEAR(furnace(black, 0.999, 0.5), 0.04, 0.01);
 }
 
+TEST(Brdf, ADielectricOfAnyReflectionReflectsAllLightAndNoMoreIfItIsWhite) {
+    const DielectricReflection glass = DielectricReflection::of(1.9f, 1.0f, glm::vec3(1.0f));
+    const DielectricReflection dull = DielectricReflection::of(1.5f, 0.3f, glm::vec3(1.0f));
+    EXPECT_NEAR(glass.f0.x, 0.0963f, 1e-4f);
+    EXPECT_NEAR(dull.f0.x, 0.012f, 1e-6f);
+    EXPECT_EQ(DielectricReflection::of(0.0f, 1.0f, glm::vec3(1.0f)).f0, glm::vec3(1.0f));
+    for (const DielectricReflection& reflection : {glass, dull})
+        for (const float roughness : {0.1f, 0.5f, 1.0f})
+            for (const float cos_view : {0.1f, 0.4f, 0.999f})
+                EXPECT_NEAR(furnace(Brdf(glm::vec3(1.0f), 0.0f, roughness, cos_view, reflection), cos_view, roughness),
+                            1.0, 0.006)
+                    << roughness << ' ' << cos_view;
+}
+
+TEST(Brdf, ACoatThrowsBackItsAlbedo) {
+    for (const float roughness : {0.1f, 0.4f, 0.9f})
+        for (const float cos_view : {0.1f, 0.5f, 0.999f}) {
+            const Coat coat(0.8f, roughness, cos_view);
+            const double shown = furnace(cos_view, roughness, [&](double nl, double nh, double vh) {
+                return coat.reflected(static_cast<float>(nl), static_cast<float>(nh), static_cast<float>(vh));
+            });
+            EXPECT_NEAR(shown, coat.albedo(), 0.006) << roughness << ' ' << cos_view;
+        }
+}
+
+TEST(Brdf, SheenThrowsBackItsAlbedo) {
+    for (const float roughness : {0.2f, 0.5f, 1.0f})
+        for (const float cos_view : {0.1f, 0.5f, 0.999f}) {
+            const Sheen sheen(glm::vec3(0.7f), roughness, cos_view);
+            const double shown = furnace(cos_view, 1.0, [&](double nl, double nh, double) {
+                return sheen.reflected(static_cast<float>(nl), static_cast<float>(nh)).x;
+            });
+            EXPECT_NEAR(shown, sheen.albedo().x, 0.02) << roughness << ' ' << cos_view;
+            EXPECT_LE(sheen.albedo().x, 0.7f);
+        }
+}
+
 TEST(Brdf, TheLobeIsReciprocal) {
     const float a = 0.3f, b = 0.9f, nh = 0.95f, vh = 0.8f;
     const Brdf from_a(glm::vec3(0.0f), 1.0f, 0.4f, a), from_b(glm::vec3(0.0f), 1.0f, 0.4f, b);

@@ -93,7 +93,8 @@ TEST(SharedSamples, SamplesOfATripleAreThoseOfTheTable) {
         for (const int spp : {1, 5, 16}) {
             const SampleTable table = table_of(pattern, spp);
             const SharedSamples shared = table.shared(2, 1);
-            const std::span<const SampleVector> cell = table.cell(2, 1);
+            std::vector<SampleVector> room;
+            const std::span<const SampleVector> cell = table.cell(2, 1, room);
             std::set<std::uint32_t> places;
             ASSERT_EQ(shared.place.size(), 1024u * static_cast<unsigned>(spp));
             for (std::size_t i = 0; i < shared.place.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <iostream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -37,10 +38,11 @@ struct Figure {
     const char* culling;
     Example example;
     Axes axes;
-    int x, y, size;    // the footprint: pixels from the cell's top left corner
-    bool one_place;    // UT and UV: only the footprint's middle, not all of it
-    int parts = 0;     // ask about domains of 1/parts of lens and shutter instead of samples
-    double fixed = 0;  // UT: v; UV: t
+    int x, y, size;          // the footprint: pixels from the cell's top left corner
+    bool one_place = false;  // UT and UV: only the footprint's middle, not all of it
+    int parts = 0;           // ask about domains of 1/parts of lens and shutter instead of samples
+    double fixed = 0;        // UT: v; UV: t
+    bool in_box = true;      // XY: within the screen box, as the renderer asks
 };
 
 Frame make_frame(const Example& example) {
@@ -92,7 +94,8 @@ class Plane {
         if (figure_.axes == Axes::kXY) {
             const float x = static_cast<float>(a * kCellSize) - 16, y = static_cast<float>(b * kCellSize) - 16;
             const int px = static_cast<int>(a * kCellSize), py = static_cast<int>((1 - b) * kCellSize);
-            kept = px >= box_.x0 && px < box_.x1 && py >= box_.y0 && py < box_.y1 && prepare(square(px, py, 1));
+            kept = !figure_.in_box || (px >= box_.x0 && px < box_.x1 && py >= box_.y0 && py < box_.y1);
+            kept = kept && prepare(square(px, py, 1));
             constexpr int n = 12;
             for (int i = 0; i < n * n * n && !hit; ++i) {
                 const double u = 2.0 * (i % n) / (n - 1) - 1, v = 2.0 * (i / n % n) / (n - 1) - 1;
@@ -115,8 +118,6 @@ class Plane {
         }
         return hit ? kept ? Mark::kHit : Mark::kLost : kept ? Mark::kKept : Mark::kRefused;
     }
-
-    const PixelRect& box() const { return box_; }
 
   private:
     static float time(double t) { return static_cast<float>(std::floor(std::min(t, 1 - 0x1p-24) * 0x1p24) * 0x1p-24); }
@@ -165,17 +166,15 @@ constexpr int kCells = 128, kScale = 3, kMargin = 34;
 
 // All places with that mark as one path, row by row.
 std::string path_of(const std::vector<Mark>& marks, Mark mark) {
-    std::string path;
+    std::ostringstream path;
     for (int y = 0; y < kCells; ++y)
         for (int x = 0; x < kCells;) {
             int end = x;
             while (end < kCells && marks[y * kCells + end] == mark) ++end;
-            if (end > x)
-                path += "M" + std::to_string(x) + " " + std::to_string(y) + "h" + std::to_string(end - x) + "v1h-" +
-                        std::to_string(end - x) + "z";
+            if (end > x) path << 'M' << x << ' ' << y << 'h' << end - x << "v1h-" << end - x << 'z';
             x = std::max(end, x + 1);
         }
-    return path;
+    return path.str();
 }
 
 void text(std::ostream& out, double x, double y, const std::string& words, const char* anchor = "middle") {
@@ -217,49 +216,57 @@ void draw(const Figure& figure, const std::string& folder) {
               << kCells * kCells << "\n";
 }
 
-// A triangle of 10 pixels that moves right by 16 pixels, comes nearer and is out of focus.
-const Example kBoth{{{{{{-14, -5, 4, 5}, {-4, -6, 4.4, 6}, {-8, 5, 3.8, 4.5}}},
-                      {{{3, -4, 3.4, 3}, {13, -7, 3.6, 4}, {8, 6, 3.2, 2.5}}}}}};
-// The same standing still.
-const Example kStill{{{kBoth.corners[0], kBoth.corners[0]}}};
-// One that leans through the plane of focus and moves.
+// A triangle of 6 pixels that moves right by 18 pixels, comes nearer and is out of focus.
+const Example kBoth{{{{{{-12, -3, 4, 4.5}, {-6, -4, 4.4, 5.2}, {-9, 3, 3.8, 4}}},
+                      {{{6, -3, 3.4, 3}, {12, -4, 3.6, 3.6}, {9, 3, 3.2, 2.6}}}}}};
+// One that moves across aslant, with little blur of the lens.
+const Example kAslant{{{{{{-13, -11, 4, 1.2}, {-7, -12, 4.4, 1.6}, {-10, -5, 3.8, 1}}},
+                        {{{6, 5, 3.4, 0.8}, {12, 4, 3.6, 1}, {9, 12, 3.2, 0.6}}}}}};
+// One of 20 pixels.
+const Example kLarge{{{{{{-18, -10, 4, 3}, {2, -12, 4.4, 3.6}, {-9, 12, 3.8, 2.8}}},
+                       {{{-8, -9, 3.4, 2.4}, {12, -12, 3.8, 3}, {3, 12, 3.2, 2.2}}}}}};
+// One that stands still, out of focus.
+const Example kStill{{{{{{-12, -9, 4, 8}, {6, -8, 4.4, 9}, {-9, 10, 3.8, 7.5}}},
+                       {{{-12, -9, 4, 8}, {6, -8, 4.4, 9}, {-9, 10, 3.8, 7.5}}}}}};
+// One that stands still and leans through the plane of focus.
 const Example kThroughFocus{
-    {{{{{-9, -6, 4, -7}, {5, -5, 5, 0.5}, {-2, 8, 6, 7}}}, {{{-4, -6, 4, -7}, {10, -4, 5, 0.5}, {4, 8, 6, 7}}}}}};
-// One that grows as it comes nearer: its corners leave the middle in different directions.
+    {{{{{-6, -6, 4, -6}, {5, -5, 6, 6}, {2, 7, 5.5, 5}}}, {{{-6, -6, 4, -6}, {5, -5, 6, 6}, {2, 7, 5.5, 5}}}}}};
+// One that grows: its corners leave the middle in different directions.
 const Example kGrowing{
-    {{{{{-3, -2, 8, 3}, {3, -2, 8, 3}, {0, 3, 8, 3}}}, {{{-13, -9, 3, 6}, {13, -9, 3, 6}, {0, 13, 3, 6}}}}}};
+    {{{{{-4, -3, 5, 2}, {4, -3, 5, 2}, {0, 4, 5, 2}}}, {{{-14, -10, 5, 2}, {14, -10, 5, 2}, {0, 14, 5, 2}}}}}};
 // One that comes past the camera.
 const Example kPast{
     {{{{{-6, -4, 3, 2}, {2, -6, 3, 2}, {-2, 4, 4, 2.5}}}, {{{-4, -6, 0.5, 3}, {3, 9, -0.6, 3}, {0, 10, 1.2, 2}}}}},
     true,
     0.4};
-// One whose back turns to the front.
+// One that is seen nearly along its plane, and turns.
 const Example kTurning{
-    {{{{{-9, -8, 4, 3}, {9, -8, 4.5, 4}, {0, 9, 5, 5}}}, {{{8, -8, 5, 5}, {-9, -7, 4.5, 4}, {0, 9, 4, 3}}}}}, false};
+    {{{{{-2.5, -8, 4, 6}, {2.5, -8, 4.5, 1}, {0, 9, 5, 3}}}, {{{2.5, -8, 5, 5}, {-2.5, -7, 4.5, 0.5}, {0, 9, 4, 3}}}}},
+    false};
 
 const Figure kFigures[] = {
-    {"bbox", "bbox", kBoth, Axes::kXY, 0, 0, 1, false},
-    {"hull", "hull", kBoth, Axes::kXY, 0, 0, 1, false},
-    {"gamma-ranges", "gamma-ranges", kPast, Axes::kXY, 0, 0, 1, false},
-    {"bbox-past-camera", "bbox", kPast, Axes::kXY, 0, 0, 1, false},
-    {"dual-space", "dual-space@pixel", kBoth, Axes::kUT, 16, 15, 1, false},
-    {"improved-dual-space", "improved-dual-space@pixel", kBoth, Axes::kUT, 16, 15, 1, false},
-    {"improved-dual-space-tile", "improved-dual-space@tile", kBoth, Axes::kUT, 16, 8, 8, true},
-    {"improved-dual-space-as-printed", "improved-dual-space-as-printed@tile", kBoth, Axes::kUT, 16, 8, 8, true},
-    {"clip-space", "clip-space@pixel", kThroughFocus, Axes::kUT, 17, 14, 1, false},
-    {"clip-space-as-printed", "clip-space-as-printed@pixel", kThroughFocus, Axes::kUT, 17, 14, 1, false},
-    {"clip-space-growing", "clip-space@pixel", kGrowing, Axes::kUT, 22, 18, 1, false},
-    {"clip-space-as-printed-growing", "clip-space-as-printed@pixel", kGrowing, Axes::kUT, 22, 18, 1, false},
-    {"clip-space-affine", "clip-space-affine@pixel", kBoth, Axes::kUT, 16, 15, 1, false},
-    {"ut-vt-lines", "ut-vt-lines@tile", kBoth, Axes::kUT, 16, 8, 8, true},
-    {"hyperplane", "hyperplane@tile", kBoth, Axes::kUT, 16, 8, 8, true},
-    {"hyperplane-and-slices", "improved-dual-space@tile+hyperplane@tile", kBoth, Axes::kUT, 16, 8, 8, true},
+    {"bbox", "bbox", kAslant, Axes::kXY, 0, 0, 1},
+    {"hull", "hull", kAslant, Axes::kXY, 0, 0, 1},
+    {"gamma-ranges", "gamma-ranges", kPast, Axes::kXY, 0, 0, 1, false, 0, 0, false},
+    {"bbox-past-camera", "bbox", kPast, Axes::kXY, 0, 0, 1},
+    {"dual-space", "dual-space@pixel", kBoth, Axes::kUT, 16, 15, 1},
+    {"improved-dual-space", "improved-dual-space@pixel", kBoth, Axes::kUT, 16, 15, 1},
+    {"improved-dual-space-tile", "improved-dual-space@tile", kBoth, Axes::kUT, 16, 8, 8},
+    {"improved-dual-space-as-printed", "improved-dual-space-as-printed@tile", kBoth, Axes::kUT, 16, 8, 8},
+    {"clip-space", "clip-space@pixel", kThroughFocus, Axes::kUV, 16, 15, 1, false, 0, 0.5},
+    {"clip-space-as-printed", "clip-space-as-printed@pixel", kThroughFocus, Axes::kUV, 16, 15, 1, false, 0, 0.5},
+    {"clip-space-growing", "clip-space@pixel", kGrowing, Axes::kUT, 7, 23, 1},
+    {"clip-space-as-printed-growing", "clip-space-as-printed@pixel", kGrowing, Axes::kUT, 7, 23, 1},
+    {"clip-space-affine", "clip-space-affine@pixel", kBoth, Axes::kUT, 16, 15, 1},
+    {"ut-vt-lines", "ut-vt-lines@tile", kBoth, Axes::kUT, 16, 8, 8},
+    {"hyperplane", "hyperplane@tile", kLarge, Axes::kUT, 16, 8, 8, true},
+    {"hyperplane-slices", "improved-dual-space@tile", kLarge, Axes::kUT, 16, 8, 8, true},
     {"half-space", "half-space@tile", kStill, Axes::kUV, 8, 8, 8, false, 0, 0.5},
     {"half-space-bilinear", "improved-dual-space@tile", kStill, Axes::kUV, 8, 8, 8, false, 0, 0.5},
-    {"hierarchical", "hierarchical@pixel", kBoth, Axes::kUT, 16, 15, 1, false},
-    {"interval", "interval@pixel", kBoth, Axes::kUT, 16, 15, 1, false},
-    {"interval-fine", "interval-fine@pixel", kBoth, Axes::kUT, 16, 15, 1, false},
-    {"facing", "facing", kTurning, Axes::kUT, 16, 16, 1, false, 8},
+    {"hierarchical", "hierarchical@pixel", kBoth, Axes::kUT, 16, 15, 1},
+    {"interval", "interval@pixel", kBoth, Axes::kUT, 16, 15, 1},
+    {"interval-fine", "interval-fine@pixel", kBoth, Axes::kUT, 16, 15, 1},
+    {"facing", "facing", kTurning, Axes::kUT, 15, 16, 1, false, 16},
 };
 
 }  // namespace
