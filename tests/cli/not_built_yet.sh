@@ -16,8 +16,6 @@ done <<'END'
 --visibility interleaved
 --visibility raytrace
 --backend gl
---shading sample
---shading decoupled
 --sampler sobol
 --aov depth,normal
 --sharp
@@ -25,8 +23,6 @@ done <<'END'
 --samples dump
 --resume
 --shard 1/4
---background sky.hdr
---background sky.exr
 END
 for command in bench merge view; do
     refuses 2 "$command is not built yet \(planned: see CHANGELOG\)" "$command" some thing --option
