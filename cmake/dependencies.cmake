@@ -13,6 +13,7 @@ find_package(CLI11 CONFIG REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(stb REQUIRED IMPORTED_TARGET stb)
 pkg_check_modules(xxhash REQUIRED IMPORTED_TARGET libxxhash)
+pkg_check_modules(murmurhash REQUIRED IMPORTED_TARGET libmurmurhash)
 find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
 find_path(TINYOBJ_INCLUDE_DIR tiny_obj_loader.h REQUIRED)
 

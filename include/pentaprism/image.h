@@ -26,8 +26,28 @@ class PictureWriter : public RowSink {
 std::unique_ptr<PictureWriter> make_picture_writer(const std::filesystem::path& file, const ImageSettings& image,
                                                    const FileMetadata& metadata);
 
+/// One float (or the bits of an unsigned number) for each pixel, row by row from the top.
+struct DataPlane {
+    std::string name;
+    bool whole_number = false;
+    std::span<const float> values;
+};
+
+/// Pictures of numbers. Each is written whole, as NAME.part first. Throw Error(kOutput).
+/// `.exr`: one part, 32-bit channels. `.npy` (NumPy 1.0): float32 of shape (height, width), or (height, width, planes)
+/// of several. `.flo` (Middlebury, Baker et al. 2011): two planes, u right and v down, pixels.
+void write_data_exr(const std::filesystem::path& file, int width, int height, std::span<const DataPlane> planes,
+                    const FileMetadata& metadata);
+void write_npy(const std::filesystem::path& file, int width, int height, std::span<const DataPlane> planes);
+void write_flo(const std::filesystem::path& file, int width, int height, const DataPlane& u, const DataPlane& v);
+/// 16-bit grey `.png`: whole millimetres, 65535 for that and more, 0 where `metres` is not finite.
+void write_depth_png(const std::filesystem::path& file, int width, int height, std::span<const float> metres);
+
 /// True for a name that make_picture_writer() accepts.
 bool is_picture_name(const std::filesystem::path& file);
+
+/// True for a file that may hold output variables beside the picture.
+bool is_exr_name(const std::filesystem::path& file);
 
 /// Threads that compress EXR pictures beside the caller's, for the whole process; 0 (the default): none. Never changes
 /// a byte.

@@ -11,6 +11,7 @@
 #include <pentaprism/stats.h>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace pentaprism {
@@ -20,23 +21,36 @@ struct FrameInfo {
     int width = 0, height = 0;           ///< of the whole picture
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< the part that is rendered, half open
     double frame = 0.0, fps = 24.0;
-    double shutter_open = 0.0, shutter_close = 0.0;  ///< seconds
-    double lens_radius = 0.0;                        ///< metres, 0: pinhole
-    double focus_distance = 0.0;                     ///< metres; 0 for a pinhole
-    double fstop = 0.0;                              ///< 0 for a pinhole
+    double shutter_open = 0.0, shutter_close = 0.0;  ///< seconds; of a rolling shutter: of the first row, of the last
+    double readout = 0.0;         ///< seconds between the first row's opening and the last's; 0: no rolling shutter
+    double lens_radius = 0.0;     ///< metres, 0: pinhole
+    double focus_distance = 0.0;  ///< metres; 0 for a pinhole
+    double fstop = 0.0;           ///< 0 for a pinhole
     double focal_length_mm = 0.0;
     std::array<double, 16> world_to_camera{};  ///< column-major, at mid-shutter; camera looks along -z
     std::array<double, 16> world_to_ndc{};     ///< column-major, at mid-shutter; NDC in [-1,1], y up
+    double fx = 0.0, fy = 0.0;                 ///< pixels: focal length (perspective) or pixels a metre (orthographic)
     std::string camera;
     int max_motion_segments = 1;
+    /// The camera at the shutter knots k / max_motion_segments: seconds, and world to camera as world_to_camera.
+    struct Knot {
+        double time = 0.0;
+        std::array<double, 16> world_to_camera{};
+    };
+    std::vector<Knot> knots;
+    std::vector<Aov> aovs;                                        ///< what PixelRows::aovs holds, in this order
+    std::vector<std::pair<std::string, std::string>> attributes;  ///< for the header of a file: names of ids
 };
 
 /// Rows y0 .. y0 + count - 1 of the picture, x from FrameInfo::x0 to x1. `rgba` holds 4 floats a pixel: linear colour
 /// with exposure applied, premultiplied by alpha where the background is absent; alpha is coverage. `z` holds one float
 /// a pixel: the depth along the optical axis (metres) of the closest sample, +infinity where nothing is hit.
+/// `aovs` holds the channels of FrameInfo::aovs one after the other (pentaprism/aov.h), each a float or an unsigned
+/// 32-bit number for each pixel of the rows.
 struct PixelRows {
     int y0 = 0, count = 0, width = 0;
     std::span<const float> rgba, z;
+    std::span<const float> aovs{};
 };
 
 /// Receives a frame. begin() is called once, then rows() for bands from top to bottom that together are the picture.
@@ -82,15 +96,23 @@ struct Picture {
     int width = 0, height = 0;
     std::vector<float> rgba;  ///< 4 * width * height
     std::vector<float> z;     ///< width * height
+    std::vector<float> aovs;  ///< width * height for each channel of FrameInfo::aovs, one channel after the other
     FrameInfo info;
 };
 Picture render_picture(const Scene& scene, const RenderSettings& settings, double frame, RenderStats& stats);
 
-/// Names for `--culling`: "auto" first, then each culling test, with one line on what it is.
+/// One name for `--culling`: a test, where it comes from, and the footprint it is asked at unless the user says
+/// another: "tile" (8x8 pixels), "pixel", or "bucket" (a stratum of the samples of 4x4 pixels).
 struct CullingChoice {
-    std::string name, description;
+    std::string name, description, footprint;
+    bool conservative = true;  ///< false: as a paper prints it; loses samples, kept to be measured
 };
+/// "auto" first, then each culling test. MethodSettings::culling is "auto" or a combination of the others,
+/// `TEST[@FOOTPRINT]` joined by `+`.
 std::vector<CullingChoice> culling_tests();
+
+/// Throws Error(kUsage) if MethodSettings::culling could not be that.
+void check_culling(const std::string& culling);
 
 /// The CPU target in use: avx512, avx2, neon or scalar (the environment's PENTAPRISM_ISA, else the best there is).
 /// Throws Error(kUsage) if the environment names a target that this processor or build does not have.

@@ -5,11 +5,27 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace pentaprism {
 
 enum class Filter : std::uint8_t { kBox, kTent, kGaussian, kBlackmanHarris };
 enum class ToneMap : std::uint8_t { kNone, kAces, kFilmic };
+/// Outputs beside colour, alpha and depth; pentaprism/aov.h tells what each means.
+enum class Aov : std::uint8_t {
+    kDepth,
+    kNormal,
+    kPosition,
+    kUv,
+    kMotion,
+    kCoc,
+    kTime,
+    kObjectId,
+    kMaterialId,
+    kCryptomatte,
+    kCoverage,
+    kVariance
+};
 /// kGltf: Lambert under GGX, energy-conserving. kBurley: Burley's diffuse lobe (2012) and no compensation, which is
 /// what Blender's renderer had until 4.0; for comparisons with it.
 enum class BrdfModel : std::uint8_t { kGltf, kBurley };
@@ -17,6 +33,14 @@ enum class BrdfModel : std::uint8_t { kGltf, kBurley };
 enum class TextureFilter : std::uint8_t { kOff, kPixel, kFull };
 enum class ShadowMode : std::uint8_t { kOff, kStill, kMoving };
 enum class ShutterPosition : std::uint8_t { kStart, kCenter, kEnd };
+/// The edge of the picture that is exposed first; kNone: all of it at once.
+enum class RollingShutter : std::uint8_t { kNone, kTop, kBottom, kLeft, kRight };
+
+/// How much light the shutter lets in at a part of its open time; straight between points.
+struct ShutterPoint {
+    double t = 0.0;     ///< 0 opens, 1 closes
+    double open = 0.0;  ///< 0 or more, in any unit: the picture is no darker for a slow shutter
+};
 
 struct ImageSettings {
     int width = 1280, height = 720;  ///< pixels, 1 to 16384
@@ -26,6 +50,7 @@ struct ImageSettings {
     double exposure = 0.0;                   ///< EV: colours are multiplied by 2^exposure
     ToneMap tonemap = ToneMap::kAces;        ///< PNG only
     std::optional<std::array<float, 3>> background;  ///< linear; unset: the scene's, else black
+    std::vector<Aov> aovs;                           ///< outputs beside the colour, each at most once
     std::string environment;  ///< instead: "sky", or a .hdr or .exr picture (latitude-longitude, up is up) that lights
                               ///< the scene, too
 };
@@ -50,6 +75,9 @@ struct ShutterSettings {
     bool motion_blur = true;                              ///< false: everything stands still at mid-shutter
     std::optional<double> shutter;                        ///< open time in frames; 0.5
     ShutterPosition position = ShutterPosition::kCenter;  ///< where the frame's time lies in the open time
+    std::vector<ShutterPoint> curve;  ///< empty: open all the time. Else 2 or more, t ascending; closed outside of them
+    RollingShutter rolling = RollingShutter::kNone;
+    std::optional<double> rolling_duration;  ///< frames between the first and the last row's opening; 0.5
     int motion_segments = 0;  ///< straight pieces of each path; 0: as many as keep the error below 0.1 pixel
 };
 
@@ -58,8 +86,19 @@ struct AnimationSettings {
     std::string animation = "all";  ///< name or index of one clip, or "all"
 };
 
+/// How the visible surface of each sample is found. Shading and film are the same for all.
+enum class VisibilityMethod {
+    kStochastic,    ///< stochastic rasterization: every sample has its own (x, y, u, v, t)
+    kAccumulation,  ///< spp passes, each with one (u, v, t) for the whole picture (Haeberli & Akeley 1990): ghosts
+    kInterleaved,   ///< InterleaveUVT (Fatahalian et al. 2009): 64 or more (u, v, t) that blocks of pixels share
+    kRaytrace,      ///< the samples of kStochastic, traced with Embree; Error(kBackend) in a build without it
+    kMicropolygon   ///< the samples of kStochastic, triangles diced to about a pixel (Reyes; Cook et al. 1987)
+};
+
 struct MethodSettings {
-    std::string culling = "auto";   ///< a name of culling_tests()
+    VisibilityMethod visibility = VisibilityMethod::kStochastic;
+    /// "auto" or a combination of culling_tests(); kRaytrace and kMicropolygon have no use for one: "auto" alone.
+    std::string culling = "auto";
     std::string shading = "pixel";  ///< how often visible surfaces are shaded
     TextureFilter texture_filter = TextureFilter::kFull;
     BrdfModel brdf = BrdfModel::kGltf;
@@ -80,5 +119,11 @@ struct RenderSettings {
 /// Throws Error(kUsage) for the first setting whose value has no meaning, by the name of its option: one that is not
 /// finite, out of its range, or at odds with another. What only the scene can tell (a camera's name) is not looked at.
 void validate(const RenderSettings& settings);
+
+/// Opens evenly from t = 0 to `open`, closes evenly from `close` to 1; 0 <= open <= close <= 1.
+std::vector<ShutterPoint> trapezoid_shutter(double open, double close);
+
+/// A text file with a line "T OPEN" for each point; blank lines and what follows a # are skipped. Throws Error(kUsage).
+std::vector<ShutterPoint> read_shutter_curve(const std::string& file);
 
 }  // namespace pentaprism

@@ -1,42 +1,15 @@
 #include "bin/bins.h"
 
 #include <algorithm>
-#include <cmath>
+#include <bit>
 
 #include "base/parallel.h"
-#include "bound/facing.h"
+#include "bin/bound_batch.h"
 
 namespace pentaprism {
 namespace {
 
 constexpr std::size_t kChunk = 4096;  // triangles bounded at a time
-constexpr float kLargest = 1e12f;     // edge functions times w grow like the cube: beyond it they would overflow
-
-bool is_usable(const MovingTriangle& m) {
-    for (int i = 0; i < 3; ++i)
-        for (int end = 0; end < 2; ++end)
-            for (const float v : {m.x[i][end], m.y[i][end], m.w[i][end], m.c[i][end], m.z[i][end]})
-                if (!(std::abs(v) <= kLargest)) return false;
-    return true;
-}
-
-void bound_triangle(const Frame& frame, std::uint32_t triangle, const PixelRect& limits,
-                    std::vector<BinnedTriangle>& out) {
-    const Part& part = frame.parts[frame.part_of[triangle]];
-    const View& view = frame.view;
-    for (int segment = 0; segment < (part.moves ? part.segments : 1); ++segment) {
-        const MovingTriangle m = moving_triangle(frame, triangle, segment);
-        if (!is_usable(m)) continue;
-        const ScreenBox box = screen_bounds(m, view.w_near(), view.lens.ratio);
-        const PixelRect rect = covered_pixels(box, view.width, view.height, limits);
-        if (rect.empty()) continue;
-        if (!part.two_sided && facing(m, view.lens.ratio) == Facing::kBack) continue;
-        out.push_back({triangle, static_cast<std::uint16_t>(segment), static_cast<std::uint16_t>(rect.x0),
-                       static_cast<std::uint16_t>(rect.x1), static_cast<std::uint16_t>(rect.y0),
-                       static_cast<std::uint16_t>(rect.y1), static_cast<float>(box.nearest_w)});
-    }
-}
-
 }  // namespace
 
 Bins::Bins(const Frame& frame, int tile_size, const PixelRect& limits)
@@ -49,8 +22,8 @@ Bins::Bins(const Frame& frame, int tile_size, const PixelRect& limits)
     std::vector<std::vector<BinnedTriangle>> bounded(chunks);
     parallel_for(chunks, [&](std::size_t chunk) {
         const std::size_t last = std::min(triangle_count, (chunk + 1) * kChunk);
-        for (std::size_t t = chunk * kChunk; t < last; ++t)
-            bound_triangle(frame, static_cast<std::uint32_t>(t), limits, bounded[chunk]);
+        bound_triangles(frame, static_cast<std::uint32_t>(chunk * kChunk), static_cast<std::uint32_t>(last), limits,
+                        bounded[chunk]);
     });
     std::size_t total = 0;
     for (const auto& chunk : bounded) total += chunk.size();
@@ -63,12 +36,13 @@ Bins::Bins(const Frame& frame, int tile_size, const PixelRect& limits)
     // Each worker owns a band of tile rows and walks all triangles in order, once to count and once to fill.
     const std::size_t tiles = static_cast<std::size_t>(columns_) * rows_;
     const int bands = std::min(rows_, thread_count());
+    const int shift = std::countr_zero(static_cast<unsigned>(tile_size_));
     auto for_each_entry = [&](int band, auto&& visit) {
         const int row0 = first_y_ + rows_ * band / bands, row1 = first_y_ + rows_ * (band + 1) / bands;
         for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
             const BinnedTriangle& t = triangles_[i];
-            const int y0 = std::max(row0, t.y0 / tile_size_), y1 = std::min(row1, (t.y1 - 1) / tile_size_ + 1);
-            const int x0 = t.x0 / tile_size_, x1 = (t.x1 - 1) / tile_size_ + 1;
+            const int y0 = std::max(row0, t.y0 >> shift), y1 = std::min(row1, ((t.y1 - 1) >> shift) + 1);
+            const int x0 = t.x0 >> shift, x1 = ((t.x1 - 1) >> shift) + 1;
             for (int y = y0; y < y1; ++y)
                 for (int x = x0; x < x1; ++x)
                     visit(static_cast<std::size_t>(y - first_y_) * columns_ + (x - first_x_), i);

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "bound/facing.h"
 #include "bound/screen_bounds.h"
 #include "frame/frame.h"
 
@@ -16,13 +17,14 @@ struct BinnedTriangle {
     std::uint32_t triangle;
     std::uint16_t segment;
     std::uint16_t x0, x1, y0, y1;  ///< pixels it may cover, half open
+    Facing facing;                 ///< the side that every sample sees, or kMixed
     float nearest_w;               ///< no sample sees it at a smaller w
 };
 
 class Bins {
   public:
     /// `limits`: the pixels that are rendered. Drops triangles with numbers that are not finite or above 1e12, those
-    /// that turn a culled back to every sample, and those outside the limits.
+    /// that turn a culled back to every sample, wholly transparent ones, and those outside the limits.
     Bins(const Frame& frame, int tile_size, const PixelRect& limits);
 
     std::span<const BinnedTriangle> triangles() const { return triangles_; }

@@ -5,7 +5,7 @@
 // Bernstein polynomial in t. Looking at the two shutter ends alone is not enough (docs/develop/algorithms.md 3.6 has
 // the counterexample).
 
-#include "frame/frame.h"
+#include "bound/local_triangle.h"
 
 namespace pentaprism {
 
@@ -13,5 +13,8 @@ enum class Facing : std::int8_t { kBack = -1, kMixed = 0, kFront = 1 };
 
 /// kFront, kBack: every accepted sample sees that side, rounding included. kMixed promises nothing.
 Facing facing(const MovingTriangle& triangle, double ratio);
+
+/// The same of the samples of one cell within a part of lens and segment; here (u, v) may be anywhere in its rectangle.
+Facing facing(const LocalTriangle& triangle, const SegmentDomain& domain);
 
 }  // namespace pentaprism

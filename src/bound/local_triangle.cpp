@@ -1,6 +1,7 @@
 #include "bound/local_triangle.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "bound/screen_bounds.h"
 #include "frame/opacity.h"
@@ -58,6 +59,16 @@ LocalTriangle localize(const Frame& frame, std::uint32_t triangle, int segment, 
         local.box[3] = static_cast<float>(box.y1);
     }
     return local;
+}
+
+SegmentDomain segment_domain(const LocalTriangle& T, const Domain& d) {
+    // The sample's own s comes from the same expression, which is monotone.
+    return {d.u0,
+            d.u1,
+            d.v0,
+            d.v1,
+            std::max(0.0f, std::fma(d.t0, T.segments, -T.segment)),
+            std::min(1.0f, std::fma(d.t1, T.segments, -T.segment))};
 }
 
 }  // namespace pentaprism

@@ -40,4 +40,13 @@ LocalSample local_sample(const SamplePoint& sample, int px, int py);
 
 LocalTriangle localize(const Frame& frame, std::uint32_t triangle, int segment, const CellCentre& centre);
 
+/// Closed ranges of the lens and of s, the part of the shutter as fractions of the triangle's segment.
+struct SegmentDomain {
+    float u0, u1, v0, v1, s0, s1;
+    bool empty() const { return !(u0 <= u1 && v0 <= v1 && s0 <= s1); }
+};
+
+/// What of the domain belongs to the triangle's segment; rounding does not move a sample out of it.
+SegmentDomain segment_domain(const LocalTriangle& triangle, const Domain& domain);
+
 }  // namespace pentaprism

@@ -1,9 +1,11 @@
 // What RenderSettings may hold, and the settings as JSON for a picture's header.
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <pentaprism/aov.h>
 #include <pentaprism/error.h>
 #include <pentaprism/metadata.h>
 #include <pentaprism/settings.h>
@@ -44,6 +46,9 @@ void check(const ImageSettings& image) {
     if (image.background) {
         for (const float value : *image.background) check_from("--background", value, 0.0, 65504.0);
     }
+    for (std::size_t i = 0; i < image.aovs.size(); ++i)
+        if (std::find(image.aovs.begin(), image.aovs.begin() + i, image.aovs[i]) != image.aovs.begin() + i)
+            refuse("--aov: an output is named twice");
     if (!image.crop) return;
     const auto [x0, x1, y0, y1] = *image.crop;
     const std::string crop = fmt::format("--crop {},{},{},{}", x0, x1, y0, y1);
@@ -87,6 +92,22 @@ void check(const CameraSettings& camera, const ImageSettings& image) {
 void check(const ShutterSettings& shutter) {
     check_from("--shutter", shutter.shutter, 0.0, 1e6);
     check_whole("--motion-segments", shutter.motion_segments, 0, 64);
+    check_from("--rolling-shutter-duration", shutter.rolling_duration, 0.0, 1e6);
+    if (shutter.rolling_duration && shutter.rolling == RollingShutter::kNone)
+        refuse("--rolling-shutter-duration: nothing rolls; give --rolling-shutter top, bottom, left or right as well");
+    if (shutter.curve.empty()) return;
+    if (shutter.curve.size() < 2) refuse("--shutter-curve: two points or more are wanted");
+    double before = 0.0, light = 0.0;
+    for (std::size_t i = 0; i < shutter.curve.size(); ++i) {
+        const auto [t, open] = shutter.curve[i];
+        if (!(t >= before && t <= 1.0))
+            refuse(fmt::format("--shutter-curve: times rise from 0 to 1, but point {} is at {}", i + 1, t));
+        if (!(open >= 0.0 && open <= 1e6))
+            refuse(fmt::format("--shutter-curve: point {} is open by {}, which is not from 0 to 1e6", i + 1, open));
+        if (i > 0) light += 0.5 * (open + shutter.curve[i - 1].open) * (t - before);
+        before = t;
+    }
+    if (!(light > 1e-9)) refuse("--shutter-curve: it lets no light in");
 }
 
 void check(const AnimationSettings& animation) {
@@ -94,7 +115,29 @@ void check(const AnimationSettings& animation) {
     check_from("--fps", animation.fps, 0.0, 1e6);
 }
 
+const char* name_of(VisibilityMethod method) {
+    switch (method) {
+        case VisibilityMethod::kAccumulation:
+            return "accumulation";
+        case VisibilityMethod::kInterleaved:
+            return "interleaved";
+        case VisibilityMethod::kRaytrace:
+            return "raytrace";
+        case VisibilityMethod::kMicropolygon:
+            return "micropolygon";
+        case VisibilityMethod::kStochastic:
+            break;
+    }
+    return "stochastic";
+}
+
 void check(const MethodSettings& method) {
+    const bool culls =
+        method.visibility != VisibilityMethod::kRaytrace && method.visibility != VisibilityMethod::kMicropolygon;
+    if (!culls && method.culling != "auto") {
+        refuse(fmt::format("--culling {}: --visibility {} has no use for it; leave one of them out", method.culling,
+                           name_of(method.visibility)));
+    }
     if (method.shading != "pixel" && method.shading != "sample" && method.shading != "decoupled")
         refuse(fmt::format("--shading: '{}' is not pixel, sample or decoupled", method.shading));
     check_whole("--threads", method.threads, 0, 1024);
@@ -141,6 +184,22 @@ const char* name_of(ShutterPosition position) {
     return "center";
 }
 
+const char* name_of(RollingShutter rolling) {
+    switch (rolling) {
+        case RollingShutter::kTop:
+            return "top";
+        case RollingShutter::kBottom:
+            return "bottom";
+        case RollingShutter::kLeft:
+            return "left";
+        case RollingShutter::kRight:
+            return "right";
+        case RollingShutter::kNone:
+            break;
+    }
+    return "none";
+}
+
 const char* name_of(ShadowMode mode) {
     switch (mode) {
         case ShadowMode::kOff:
@@ -176,6 +235,12 @@ void validate(const RenderSettings& settings) {
     check(settings.shutter);
     check(settings.animation);
     check(settings.method);
+    const bool shares_times = settings.method.visibility == VisibilityMethod::kAccumulation ||
+                              settings.method.visibility == VisibilityMethod::kInterleaved;
+    if (settings.shutter.rolling != RollingShutter::kNone && shares_times) {
+        refuse(fmt::format("--rolling-shutter: with --visibility {} all rows share their times; leave one of them out",
+                           name_of(settings.method.visibility)));
+    }
 }
 
 std::string settings_json(const RenderSettings& settings, const std::string& scene_name, const std::string& hash) {
@@ -190,6 +255,7 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
     json["exposure"] = image.exposure;
     json["tonemap"] = name_of(image.tonemap);
     put(json, "background", image.background);
+    for (const Aov aov : image.aovs) json["aovs"].push_back(aov_info(aov).name);
     put(json, "environment", file_name(image.environment));
     put(json, "camera", camera.camera);
     put(json, "focal_length_mm", camera.focal_length_mm);
@@ -206,9 +272,13 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
     json["motion_blur"] = shutter.motion_blur;
     put(json, "shutter", shutter.shutter);
     json["shutter_position"] = name_of(shutter.position);
+    for (const auto& [t, open] : shutter.curve) json["shutter_curve"].push_back({t, open});
+    json["rolling_shutter"] = name_of(shutter.rolling);
+    put(json, "rolling_shutter_duration", shutter.rolling_duration);
     json["motion_segments"] = shutter.motion_segments;
     json["fps"] = animation.fps;
     json["animation"] = animation.animation;
+    json["visibility"] = name_of(method.visibility);
     json["shading"] = method.shading;
     json["texture_filter"] = method.texture_filter == TextureFilter::kOff     ? "off"
                              : method.texture_filter == TextureFilter::kPixel ? "pixel"

@@ -140,10 +140,21 @@ void resolve_lens(const Scene& scene, const CameraSettings& settings, const Lens
 Shutter resolve_shutter(const RenderSettings& settings, const LensInfo& info, double frame) {
     const double fps = settings.animation.fps;
     const double open_frames = settings.shutter.shutter.value_or(info.shutter.value_or(0.5));
+    const RollingShutter rolling = settings.shutter.rolling;
+    const double readout_frames =
+        rolling == RollingShutter::kNone ? 0.0 : settings.shutter.rolling_duration.value_or(0.5);
+    const double all_frames = open_frames + readout_frames;
     double start = frame;
-    if (settings.shutter.position == ShutterPosition::kCenter) start -= 0.5 * open_frames;
-    if (settings.shutter.position == ShutterPosition::kEnd) start -= open_frames;
-    Shutter shutter{start / fps, (start + open_frames) / fps};
+    if (settings.shutter.position == ShutterPosition::kCenter) start -= 0.5 * all_frames;
+    if (settings.shutter.position == ShutterPosition::kEnd) start -= all_frames;
+    Shutter shutter;
+    shutter.open = start / fps;
+    shutter.close = (start + all_frames) / fps;
+    shutter.curve = ShutterCurve(settings.shutter.curve);
+    if (readout_frames > 0.0) {
+        shutter.rolling = rolling;
+        shutter.exposure_share = open_frames / all_frames;
+    }
     if (!settings.shutter.motion_blur) shutter.open = shutter.close = shutter.middle();
     return shutter;
 }
@@ -162,11 +173,6 @@ glm::dmat4 world_to_camera(const View& view, const Pose& pose) {
     rigid[2] = glm::dvec4(back, 0.0);
     rigid[3] = world[3];
     return glm::affineInverse(rigid);
-}
-
-glm::dvec4 to_raster_clip(const View& view, const glm::dvec3& p) {
-    const double depth = -p.z;
-    return {view.fx * p.x, view.fy * p.y, view.perspective ? depth : 1.0, depth};
 }
 
 View make_view(const Scene& scene, const RenderSettings& settings, double frame) {

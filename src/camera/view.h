@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "camera/shutter_curve.h"
 #include "scene/pose.h"
 
 namespace pentaprism {
@@ -30,9 +31,14 @@ struct Lens {
     bool pinhole() const { return radius == 0.0; }
 };
 
-/// Shutter open and close in seconds; equal when nothing may move.
+/// Shutter open and close in seconds; equal when nothing may move. A rolling shutter opens at `open` for the first row
+/// and closes at `close` for the last.
 struct Shutter {
     double open = 0.0, close = 0.0;
+    RollingShutter rolling = RollingShutter::kNone;
+    double exposure_share = 1.0;  ///< how much of that time a row is exposed: below 1 for a rolling shutter alone
+    ShutterCurve curve{};         ///< within the exposure of a row
+    double readout() const { return (1.0 - exposure_share) * (close - open); }  ///< seconds
     double middle() const { return 0.5 * (open + close); }
     /// Time of t in [0, 1].
     double at(double t) const { return open + (close - open) * t; }
@@ -57,7 +63,10 @@ struct View {
 glm::dmat4 world_to_camera(const View& view, const Pose& pose);
 
 /// A point of camera space in raster clip space: x, y, w and the depth z.
-glm::dvec4 to_raster_clip(const View& view, const glm::dvec3& camera_space);
+inline glm::dvec4 to_raster_clip(const View& view, const glm::dvec3& camera_space) {
+    const double depth = -camera_space.z;
+    return {view.fx * camera_space.x, view.fy * camera_space.y, view.perspective ? depth : 1.0, depth};
+}
 
 /// Resolves camera, lens and shutter of frame number `frame`. Throws Error(kUsage) for a camera, node or animation that
 /// the scene does not have.

@@ -13,9 +13,11 @@ void add_render(CLI::App& program, Run& run);
 void add_scene(CLI::App& program, Run& run);
 void add_info(CLI::App& program, Run& run);
 void add_verify(CLI::App& program, Run& run);
+void add_bench(CLI::App& program, Run& run);
+void add_experiment(CLI::App& program, Run& run);
 void add_compare(CLI::App& program, Run& run);
 
-/// Commands of the contract that are refused by name: bench, merge, view.
+/// Commands of the contract that are refused by name: merge, view.
 void add_planned_commands(CLI::App& program, Run& run);
 
 }  // namespace pentaprism::cli

@@ -59,6 +59,8 @@ int run_program(int argc, char** argv) {
     add_scene(program, run);
     add_info(program, run);
     add_verify(program, run);
+    add_bench(program, run);
+    add_experiment(program, run);
     add_compare(program, run);
     add_planned_commands(program, run);
     try {

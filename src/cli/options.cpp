@@ -26,10 +26,8 @@ void add_partly_built(CLI::App& command, const std::string& group, const std::st
     for (const std::string& value : planned) form += "|" + value;
     add_value(command, group, name, form, description + " (only " + built + " is built)", [=](const std::string& text) {
         if (text == built) return;
-        // trapezoid:OPEN,CLOSE is told by what is before the colon.
-        const std::string word = text.substr(0, text.find(':'));
         for (const std::string& value : planned) {
-            if (value.substr(0, value.find(':')) == word || value == "FILE") refuse_as_planned(name + " " + text);
+            if (value == text) refuse_as_planned(name + " " + text);
         }
         throw Error(ErrorKind::kUsage, fmt::format("{}: '{}' is not one of {}", name, text, form));
     });
@@ -131,6 +129,14 @@ void add_lens_options(CLI::App& command, CameraSettings& camera) {
         ->group(group);
 }
 
+std::vector<ShutterPoint> parse_shutter_curve(const std::string& text) {
+    if (text == "box") return {};
+    const std::string trapezoid = "trapezoid:";
+    if (text.substr(0, trapezoid.size()) != trapezoid) return read_shutter_curve(text);
+    const auto times = parse_numbers("--shutter-curve", text.substr(trapezoid.size()), 2, "trapezoid:OPEN,CLOSE");
+    return trapezoid_shutter(times[0], times[1]);
+}
+
 void add_shutter_options(CLI::App& command, ShutterSettings& shutter) {
     const std::string group = "Shutter";
     add_number(command, group, "--shutter", "F", "Open time in frames (default: the camera's, else 0.5)",
@@ -142,11 +148,22 @@ void add_shutter_options(CLI::App& command, ShutterSettings& shutter) {
                                                                     {"center", ShutterPosition::kCenter},
                                                                     {"end", ShutterPosition::kEnd}});
               });
-    add_partly_built(command, group, "--shutter-curve", "How the shutter opens and closes", "box",
-                     {"trapezoid:OPEN,CLOSE", "FILE"});
-    add_partly_built(command, group, "--rolling-shutter", "The edge that is read out first", "none",
-                     {"top", "bottom", "left", "right"});
-    add_planned_value(command, group, "--rolling-shutter-duration", "F", "Time of the read-out in frames");
+    add_value(command, group, "--shutter-curve", "box|trapezoid:OPEN,CLOSE|FILE",
+              "How it opens and closes: at once, evenly until OPEN and from CLOSE of its time, or a file with lines T "
+              "OPEN (default box)",
+              [&](const std::string& text) { shutter.curve = parse_shutter_curve(text); });
+    add_value(command, group, "--rolling-shutter", "none|top|bottom|left|right",
+              "The edge of the picture that is exposed first (default none: all at once)",
+              [&](const std::string& text) {
+                  shutter.rolling = parse_choice<RollingShutter>("--rolling-shutter", text,
+                                                                 {{"none", RollingShutter::kNone},
+                                                                  {"top", RollingShutter::kTop},
+                                                                  {"bottom", RollingShutter::kBottom},
+                                                                  {"left", RollingShutter::kLeft},
+                                                                  {"right", RollingShutter::kRight}});
+              });
+    add_number(command, group, "--rolling-shutter-duration", "F",
+               "Frames from the first row's opening to the last's (default 0.5)", shutter.rolling_duration);
     add_value(command, group, "--motion-segments", "auto|N",
               "Straight pieces of each path, 1 to 64 (default auto: error below 0.1 pixel)",
               [&](const std::string& text) {
@@ -170,15 +187,24 @@ void add_animation_options(CLI::App& command, AnimationSettings& animation) {
 void add_method_options(CLI::App& command, MethodSettings& method) {
     const std::string group = "Method";
     std::string names;
-    for (const CullingChoice& choice : culling_tests()) names += (names.empty() ? "" : ", ") + choice.name;
-    add_value(command, group, "--culling", "NAME", fmt::format("Culling test (default auto): {}", names),
+    for (const CullingChoice& choice : culling_tests())
+        names += (names.empty() ? "" : ", ") + choice.name + (choice.conservative ? "" : " (loses samples)");
+    add_value(command, group, "--culling", "TEST[@tile|@pixel|@bucket][+...]",
+              fmt::format("Culling tests and what each is asked about (default auto): {}", names),
               [&](const std::string& text) {
-                  std::vector<std::pair<std::string, std::string>> choices;
-                  for (const CullingChoice& choice : culling_tests()) choices.emplace_back(choice.name, choice.name);
-                  method.culling = parse_choice<std::string>("--culling", text, choices);
+                  check_culling(text);
+                  method.culling = text;
               });
-    add_partly_built(command, group, "--visibility", "How visibility is sampled", "stochastic",
-                     {"accumulation", "interleaved", "raytrace"});
+    add_value(command, group, "--visibility", "stochastic|accumulation|interleaved|raytrace|micropolygon",
+              "How visible surfaces are found (default stochastic)", [&](const std::string& text) {
+                  method.visibility =
+                      parse_choice<VisibilityMethod>("--visibility", text,
+                                                     {{"stochastic", VisibilityMethod::kStochastic},
+                                                      {"accumulation", VisibilityMethod::kAccumulation},
+                                                      {"interleaved", VisibilityMethod::kInterleaved},
+                                                      {"raytrace", VisibilityMethod::kRaytrace},
+                                                      {"micropolygon", VisibilityMethod::kMicropolygon}});
+              });
     add_partly_built(command, group, "--backend", "What computes", "cpu", {"gl"});
     add_value(command, group, "--shading", "pixel|sample|decoupled",
               "How often visible surfaces are shaded (default pixel)", [&](const std::string& text) {

@@ -7,7 +7,6 @@ namespace pentaprism::cli {
 
 void add_planned_commands(CLI::App& program, Run& run) {
     const std::pair<const char*, const char*> planned[] = {
-        {"bench", "Run every culling test on scenes and report (not built yet)"},
         {"merge", "Join shards (not built yet)"},
         {"view", "The interactive viewer (not built yet)"},
     };

@@ -16,12 +16,6 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-ProgressStyle resolve(const Verbosity& verbosity) {
-    if (verbosity.progress != ProgressStyle::kAuto) return verbosity.progress;
-    if (verbosity.quiet) return ProgressStyle::kNone;
-    return ::isatty(STDERR_FILENO) ? ProgressStyle::kTty : ProgressStyle::kPlain;
-}
-
 /// How often a line may come: a terminal is looked at, a log is kept.
 double seconds_between(ProgressStyle style) {
     switch (style) {
@@ -82,8 +76,14 @@ void add_verbosity_options(CLI::App& command, Verbosity& verbosity) {
         ->group(group);
 }
 
+ProgressStyle resolve_style(const Verbosity& verbosity) {
+    if (verbosity.progress != ProgressStyle::kAuto) return verbosity.progress;
+    if (verbosity.quiet) return ProgressStyle::kNone;
+    return ::isatty(STDERR_FILENO) ? ProgressStyle::kTty : ProgressStyle::kPlain;
+}
+
 ProgressReporter::ProgressReporter(const Verbosity& verbosity, std::size_t frames)
-    : style_(resolve(verbosity)), frames_(frames) {}
+    : style_(resolve_style(verbosity)), frames_(frames) {}
 
 ProgressReporter::~ProgressReporter() {
     if (style_ == ProgressStyle::kTty) set_status_line("");

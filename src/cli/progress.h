@@ -18,6 +18,9 @@ struct Verbosity {
 };
 void add_verbosity_options(CLI::App& command, Verbosity& verbosity);
 
+/// What kAuto comes down to: by -q and by what stderr is.
+ProgressStyle resolve_style(const Verbosity& verbosity);
+
 class ProgressReporter {
   public:
     ProgressReporter(const Verbosity& verbosity, std::size_t frames);

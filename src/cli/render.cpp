@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <pentaprism/aov.h>
 #include <pentaprism/error.h>
 #include <pentaprism/frames.h>
 #include <pentaprism/image.h>
@@ -13,10 +14,12 @@
 #include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/frame_output.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/progress.h"
+#include "cli/values.h"
 
 namespace pentaprism::cli {
 namespace {
@@ -32,36 +35,11 @@ double milliseconds_since(Clock::time_point start) {
 struct RenderCommand {
     std::string scene;
     RenderSettings settings;
-    fs::path out, stats;
+    fs::path out, stats, dataset;
+    bool sharp = false;
     std::vector<std::int64_t> frames{0};
     bool overwrite = false, skip_existing = false;
     Verbosity verbosity;
-};
-
-/// Hands a frame on and takes the time that files cost.
-class TimedSink : public RowSink {
-  public:
-    explicit TimedSink(PictureWriter& writer) : writer_(writer) {}
-    void begin(const FrameInfo& info) override {
-        timed([&] { writer_.begin(info); });
-    }
-    void rows(const PixelRows& band) override {
-        timed([&] { writer_.rows(band); });
-    }
-    void finish() {
-        timed([&] { writer_.finish(); });
-    }
-    double milliseconds() const { return milliseconds_; }
-
-  private:
-    template <class Body>
-    void timed(const Body& body) {
-        const Clock::time_point start = Clock::now();
-        body();
-        milliseconds_ += milliseconds_since(start);
-    }
-    PictureWriter& writer_;
-    double milliseconds_ = 0.0;
 };
 
 /// What can be known of a failing output before hours of rendering is said before.
@@ -80,24 +58,34 @@ void check_output_name(const fs::path& file, const char* option) {
 }
 
 void check_names(const RenderCommand& command) {
+    if (command.out.empty() == command.dataset.empty())
+        throw Error(ErrorKind::kUsage, "one of --output and --dataset says where the frames go");
+    if (!command.stats.empty()) check_output_name(frame_file(command.stats, command.frames.front()), "--stats");
+    if (!command.dataset.empty()) {
+        if (!command.settings.image.aovs.empty() || command.sharp)
+            throw Error(ErrorKind::kUsage, "--dataset holds its own --aov and --sharp; leave them out");
+        return;
+    }
     if (!is_picture_name(command.out)) {
         throw Error(ErrorKind::kUsage,
                     fmt::format("--output {}: the name must end in .exr or .png", command.out.string()));
     }
+    if (!command.settings.image.aovs.empty() && !is_exr_name(command.out))
+        throw Error(ErrorKind::kUsage,
+                    fmt::format("--aov: only .exr files hold more than a picture, not {}", command.out.string()));
     if (command.frames.size() > 1 && !has_frame_number(command.out)) {
         throw Error(ErrorKind::kUsage,
                     fmt::format("--output {}: {} frames need a place for their number, such as a.####{}",
                                 command.out.string(), command.frames.size(), command.out.extension().string()));
     }
     check_output_name(frame_file(command.out, command.frames.front()), "--output");
-    if (!command.stats.empty()) check_output_name(frame_file(command.stats, command.frames.front()), "--stats");
 }
 
 Json to_json(const RenderStats& stats, const RenderCommand& command, std::int64_t frame, const std::string& scene) {
     Json json;
     json["scene"] = scene;
     json["frame"] = frame;
-    json["file"] = frame_file(command.out, frame).filename().string();
+    if (!command.out.empty()) json["file"] = frame_file(command.out, frame).filename().string();
     json["width"] = command.settings.image.width;
     json["height"] = command.settings.image.height;
     json["spp"] = command.settings.image.spp;
@@ -119,18 +107,6 @@ std::string to_text(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-RenderStats render_to_file(Renderer& renderer, const RenderCommand& command, std::int64_t frame, const fs::path& file,
-                           const FileMetadata& metadata, const Progress& progress) {
-    const auto writer = make_picture_writer(file, command.settings.image, metadata);
-    TimedSink sink(*writer);
-    RenderStats stats;
-    renderer.render(command.settings, static_cast<double>(frame), sink, stats, progress);
-    throw_if_interrupted();
-    sink.finish();
-    stats.times_ms["write"] = sink.milliseconds();
-    return stats;
-}
-
 int render(RenderCommand& command) {
     complete_settings(command.settings);
     check_names(command);
@@ -141,9 +117,10 @@ int render(RenderCommand& command) {
     print_info(fmt::format("{}: {} triangles, read in {:.0f} ms", scene.name, count_triangles(scene), load_ms));
     throw_if_interrupted();
 
-    FileMetadata metadata;
-    metadata.software = "pentaprism " PENTAPRISM_VERSION;
-    metadata.settings_json = settings_json(command.settings, scene.name, scene_hash(command.scene));
+    const FrameSource source{command.settings, scene.name, scene_hash(command.scene), "pentaprism " PENTAPRISM_VERSION};
+    const std::unique_ptr<FrameOutput> output = command.dataset.empty()
+                                                    ? make_picture_output(source, command.out, command.sharp)
+                                                    : make_dataset_output(source, command.dataset);
     set_picture_threads(command.settings.method.threads == 1 ? 0 : 2);
 
     const bool stats_for_each_frame = has_frame_number(command.stats);
@@ -151,13 +128,12 @@ int render(RenderCommand& command) {
     ProgressReporter progress(command.verbosity, command.frames.size());
     Renderer renderer(scene);
     for (const std::int64_t frame : command.frames) {
-        const fs::path file = frame_file(command.out, frame);
-        if (command.skip_existing && fs::exists(file)) {
-            progress.skip_frame(frame, file.string());
+        if (command.skip_existing && output->exists(frame)) {
+            progress.skip_frame(frame, output->name(frame));
             continue;
         }
         progress.begin_frame(frame);
-        RenderStats stats = render_to_file(renderer, command, frame, file, metadata, progress.callback());
+        RenderStats stats = output->render(renderer, frame, progress.callback());
         stats.times_ms["load"] = load_ms;
         if (!command.stats.empty()) {
             Json json = to_json(stats, command, frame, scene.name);
@@ -166,8 +142,9 @@ int render(RenderCommand& command) {
         }
         for (const auto& [stage, ms] : stats.times_ms)
             print_debug(fmt::format("frame {}: {} {:.1f} ms", frame, stage, ms));
-        progress.end_frame(file.string());
+        progress.end_frame(output->name(frame));
     }
+    output->finish();
     if (!all_stats.empty() && !stats_for_each_frame) {
         // One frame was asked for: the object itself; several: one object for each frame that was rendered.
         const bool single = command.frames.size() == 1;
@@ -180,11 +157,19 @@ void add_output_options(CLI::App& command, RenderCommand& render) {
     const std::string group = "Outputs";
     add_value(command, group, "-o,--output", "OUT",
               "Picture: .exr (linear) or .png (tone-mapped); #### is the frame's number",
-              [&](const std::string& text) { render.out = text; })
-        ->required();
-    add_planned_value(command, group, "--aov", "LIST", "More channels");
-    add_planned_flag(command, group, "--sharp", "The instantaneous pinhole twin");
-    add_planned_value(command, group, "--dataset", "DIR", "Blurred and sharp frames, depth, flow, ...");
+              [&](const std::string& text) { render.out = text; });
+    std::string names;
+    for (const AovInfo& info : aov_table()) names += (names.empty() ? "" : ", ") + std::string(info.name);
+    add_value(command, group, "--aov", "LIST",
+              fmt::format("More outputs in .exr files, with commas between: {}", names), [&](const std::string& text) {
+                  for (const std::string& name : split_list(text)) {
+                      if (name == "albedo" || name == "ste") refuse_as_planned("--aov " + name);
+                      render.settings.image.aovs.push_back(aov_named(name));
+                  }
+              });
+    command.add_flag("--sharp", render.sharp, "Also OUT's twin OUT.sharp.EXT: a pinhole at mid-shutter")->group(group);
+    add_value(command, group, "--dataset", "DIR", "Instead of OUT: blurred and sharp frames, depth, flow, ids, cameras",
+              [&](const std::string& text) { render.dataset = text; });
     add_value(command, group, "--stats", "FILE.json",
               "What a frame cost; #### as in OUT, else an array for several frames",
               [&](const std::string& text) { render.stats = text; });

@@ -36,17 +36,24 @@ double parse_number(const std::string& option, const std::string& text) {
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count,
                                   const std::string& form) {
     std::vector<double> values;
-    std::string_view rest = text;
-    for (bool more = true; more;) {
-        const std::size_t comma = rest.find(',');
-        more = comma != std::string_view::npos;
+    for (const std::string& part : split_list(text)) {
         double value = 0.0;
-        if (!parse_all(rest.substr(0, comma), value)) refuse(option, text, "of the form " + form);
+        if (!parse_all(part, value)) refuse(option, text, "of the form " + form);
         values.push_back(value);
-        if (more) rest.remove_prefix(comma + 1);
     }
     if (values.size() != count) refuse(option, text, "of the form " + form);
     return values;
+}
+
+std::vector<std::string> split_list(const std::string& text) {
+    std::vector<std::string> parts(1);
+    for (const char c : text) {
+        if (c == ',')
+            parts.emplace_back();
+        else
+            parts.back() += c;
+    }
+    return parts;
 }
 
 std::pair<int, int> parse_size(const std::string& option, const std::string& text) {

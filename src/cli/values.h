@@ -18,6 +18,9 @@ double parse_number(const std::string& option, const std::string& text);
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count,
                                   const std::string& form);
 
+/// The parts of a list with commas between them.
+std::vector<std::string> split_list(const std::string& text);
+
 /// "1280x720"
 std::pair<int, int> parse_size(const std::string& option, const std::string& text);
 

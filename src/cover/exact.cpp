@@ -11,20 +11,15 @@ namespace {
 // of the camera.
 struct Deltas {
     float x[3], y[3], w[3], z[3];
-    bool in_segment;
 };
 
-Deltas deltas(const LocalTriangle& T, const LocalSample& s) {
+Deltas deltas(const PlacedTriangle& placed, float hx, float hy) {
     Deltas D;
-    const float tau = std::fma(s.t, T.segments, -T.segment);  // exact: t is a multiple of 2^-24
-    D.in_segment = tau >= 0.0f && tau < 1.0f;
     for (int i = 0; i < 3; ++i) {
-        const float x = std::fma(tau, T.dx[i], T.qx[i]), y = std::fma(tau, T.dy[i], T.qy[i]);
-        const float w = std::fma(tau, T.dw[i], T.qw[i]), c = std::fma(tau, T.dc[i], T.qc[i]);
-        D.x[i] = std::fma(-s.hx, w, std::fma(s.u, c, x));
-        D.y[i] = std::fma(-s.hy, w, std::fma(s.v, c, y));
-        D.w[i] = w;
-        D.z[i] = T.orthographic ? std::fma(tau, T.dz[i], T.qz[i]) : w;
+        D.x[i] = std::fma(-hx, placed.w[i], placed.x[i]);
+        D.y[i] = std::fma(-hy, placed.w[i], placed.y[i]);
+        D.w[i] = placed.w[i];
+        D.z[i] = placed.z[i];
     }
     return D;
 }
@@ -64,9 +59,25 @@ void resolve(const Deltas& D, const float e[3], SampleHit& hit) {
 
 }  // namespace
 
-SampleHit cover_sample(const LocalTriangle& T, const LocalSample& s, const CellCentre& centre) {
-    const Deltas D = deltas(T, s);
-    if (!D.in_segment) return {};
+PlacedTriangle place_triangle(const LocalTriangle& T, float u, float v, float t) {
+    PlacedTriangle placed;
+    const float tau = std::fma(t, T.segments, -T.segment);  // exact: t is a multiple of 2^-24
+    placed.in_segment = tau >= 0.0f && tau < 1.0f;
+    for (int i = 0; i < 3; ++i) {
+        const float x = std::fma(tau, T.dx[i], T.qx[i]), y = std::fma(tau, T.dy[i], T.qy[i]);
+        const float w = std::fma(tau, T.dw[i], T.qw[i]), c = std::fma(tau, T.dc[i], T.qc[i]);
+        placed.x[i] = std::fma(u, c, x);
+        placed.y[i] = std::fma(v, c, y);
+        placed.w[i] = w;
+        placed.z[i] = T.orthographic ? std::fma(tau, T.dz[i], T.qz[i]) : w;
+    }
+    return placed;
+}
+
+SampleHit cover_placed(const LocalTriangle& T, const PlacedTriangle& placed, float hx, float hy,
+                       const CellCentre& centre) {
+    if (!placed.in_segment) return {};
+    const Deltas D = deltas(placed, hx, hy);
     const float e[3] = {edge(D, 1, 2), edge(D, 2, 0), edge(D, 0, 1)};
     const int sign = sign_with_ties(e[0], D, 1, 2);
     if (sign == 0 || sign != sign_with_ties(e[1], D, 2, 0) || sign != sign_with_ties(e[2], D, 0, 1)) return {};
@@ -74,7 +85,7 @@ SampleHit cover_sample(const LocalTriangle& T, const LocalSample& s, const CellC
     // Condition (N): for slivers the edge functions may be rounding noise that agrees in sign beyond the tips.
     if (!straddles_zero(D.x) || !straddles_zero(D.y)) return {};
     if (T.behind) {
-        const float gx = centre.x + s.hx, gy = centre.y + s.hy;
+        const float gx = centre.x + hx, gy = centre.y + hy;
         if (!(gx >= T.box[0] && gx <= T.box[1] && gy >= T.box[2] && gy <= T.box[3])) return {};
     }
     SampleHit hit;
@@ -83,8 +94,12 @@ SampleHit cover_sample(const LocalTriangle& T, const LocalSample& s, const CellC
     return hit;
 }
 
+SampleHit cover_sample(const LocalTriangle& T, const LocalSample& s, const CellCentre& centre) {
+    return cover_placed(T, place_triangle(T, s.u, s.v, s.t), s.hx, s.hy, centre);
+}
+
 SampleHit project_sample(const LocalTriangle& T, const LocalSample& s) {
-    const Deltas D = deltas(T, s);
+    const Deltas D = deltas(place_triangle(T, s.u, s.v, s.t), s.hx, s.hy);
     const float e[3] = {edge(D, 1, 2), edge(D, 2, 0), edge(D, 0, 1)};
     SampleHit hit;
     resolve(D, e, hit);

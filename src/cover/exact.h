@@ -17,6 +17,18 @@ struct SampleHit {
 
 SampleHit cover_sample(const LocalTriangle& triangle, const LocalSample& sample, const CellCentre& centre);
 
+/// The triangle as one lens position and time place it: where it stands still for all samples that share these.
+/// Corner i is seen at (x, y) / w, relative to the cell's middle. z: what depth is made of.
+struct PlacedTriangle {
+    float x[3], y[3], w[3], z[3];
+    bool in_segment = true;  ///< false: the time belongs to another segment, so nothing is hit
+};
+PlacedTriangle place_triangle(const LocalTriangle& triangle, float u, float v, float t);
+
+/// cover_sample() of a sample with that lens position and time, from there on: the same bits.
+SampleHit cover_placed(const LocalTriangle& triangle, const PlacedTriangle& placed, float hx, float hy,
+                       const CellCentre& centre);
+
 /// The barycentrics alone, whether or not the sample is covered: for shading and for references that found the hit
 /// themselves. Values outside the triangle are possible; not finite for a degenerate one.
 SampleHit project_sample(const LocalTriangle& triangle, const LocalSample& sample);

@@ -2,10 +2,13 @@
 // What a culling test is: a cheap, conservative question asked before the exact test. One file src/cull/NAME.cpp each,
 // which ends with `extern const CullTest NAME_test{...}`; the build collects them into cull_table(), and the
 // property tests, the statistics and `--culling NAME` (with '-' for '_') take them from there.
+// docs/develop/adding-a-culling-test.md goes through it step by step.
 
 #include <array>
+#include <cstddef>
 #include <span>
 #include <string_view>
+#include <type_traits>
 
 #include "bound/local_triangle.h"
 
@@ -18,10 +21,31 @@ struct Footprint {
     Domain domain;
 };
 
-/// What prepare() works out for one triangle and footprint and keeps() reads; each test has its own meaning for the
-/// numbers.
-struct CullState {
-    std::array<float, 64> values;
+/// What the samples of a footprint have in common. Tile: 8x8 pixels, the whole lens and shutter. Pixel: one of them.
+/// Bucket: one vector of the sample table, 4x4 pixels and the samples' own ranges of screen, lens and shutter.
+enum class Grain : std::uint8_t { kTile, kPixel, kBucket };
+inline constexpr int kCullTileSize = 8;  ///< pixels a side of a tile of culling tests
+
+/// Room for numbers that one function of a test leaves for the next; each test has its own struct for them.
+template <std::size_t kBytes>
+struct alignas(16) CullMemory {
+    std::array<std::byte, kBytes> bytes;
+
+    template <class T>
+    T& as() {
+        static_assert(sizeof(T) <= kBytes && alignof(T) <= 16 && std::is_trivially_copyable_v<T>);
+        return *reinterpret_cast<T*>(bytes.data());
+    }
+    template <class T>
+    const T& as() const {
+        return const_cast<CullMemory*>(this)->as<T>();
+    }
+};
+using CullSetup = CullMemory<4608>;  ///< of a triangle
+
+/// Of a triangle and a footprint.
+struct CullState : CullMemory<640> {
+    const CullSetup* setup = nullptr;  ///< what begin() left; only for tests that have one
 };
 
 struct CullTest {
@@ -35,6 +59,16 @@ struct CullTest {
 
     /// False promises the same of one sample of the footprint. Asked only after prepare() returned true.
     bool (*keeps)(const CullState& state, const LocalSample& sample);
+
+    Grain grain = Grain::kPixel;  ///< asked at this footprint if the user does not say at which
+
+    /// Optional: what is worked out once for a triangle, before its footprints. `picture` is the whole picture in the
+    /// cell's coordinates, which may reach beyond [-16, 16], with the whole lens and shutter. False promises that no
+    /// sample of the cell hits the triangle.
+    bool (*begin)(const LocalTriangle& triangle, const Footprint& picture, CullSetup& setup) = nullptr;
+
+    /// False: as a paper prints it, with the flaws that lose samples. Kept to be measured; changes the picture.
+    bool conservative = true;
 };
 
 /// All culling tests, by name.

@@ -65,9 +65,10 @@ double path_error(const View& view, const ClipPoints& p, const ClipPoints& q, co
         if (!(truth[i].z >= near && straight.z >= near)) continue;
         const double x = truth[i].x / truth[i].z, y = truth[i].y / truth[i].z;
         if (!(std::abs(x) < reach && std::abs(y) < reach)) continue;
-        worst = std::max(worst, std::hypot(straight.x / straight.z - x, straight.y / straight.z - y));
+        const double dx = straight.x / straight.z - x, dy = straight.y / straight.z - y;
+        worst = std::max(worst, dx * dx + dy * dy);
     }
-    return worst;
+    return std::sqrt(worst);
 }
 
 // A placement's points at the knots of its segments.
@@ -118,6 +119,10 @@ struct PosedPart {
 };
 
 void append_knot(const View& view, const ClipPoints& knot, PosedPart& posed) {
+    // All knots at once: growing copies.
+    const std::size_t all = knot.size() * (posed.part.moves ? posed.part.segments + 1 : 1);
+    posed.points.reserve(all);
+    if (!view.perspective) posed.depths.reserve(all);
     for (const glm::dvec4& p : knot) {
         const double c = view.lens.a + view.lens.b * p.w;
         posed.points.emplace_back(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z),

@@ -37,18 +37,6 @@ std::uint32_t permuted(std::uint32_t i, std::uint32_t n, std::uint32_t seed) {
     return i;
 }
 
-// Stratified over the pixel's samples, independent between triangles: two layers, also of one mesh, must not hide
-// together.
-float threshold(std::uint32_t triangle, int px, int py, int sample_index, int spp) {
-    const std::uint32_t pixel = mix(mix(static_cast<std::uint32_t>(px)) + static_cast<std::uint32_t>(py));
-    const std::uint32_t seed = mix(pixel + mix(triangle + 0x9e3779b9u));
-    const std::uint32_t index = static_cast<std::uint32_t>(sample_index);
-    const std::uint32_t n = static_cast<std::uint32_t>(std::max(1, spp));
-    const float offset = static_cast<float>(mix(seed + index + 1u) >> 8) * 0x1p-24f;
-    return std::min((static_cast<float>(permuted(index % n, n, seed)) + offset) / static_cast<float>(n),
-                    1.0f - 0x1p-24f);
-}
-
 float vertex_alpha(const Primitive& primitive, const std::array<std::uint32_t, 3>& vertices, const float b[3]) {
     if (primitive.colors.empty()) return 1.0f;
     return b[0] * primitive.colors[vertices[0]].w + b[1] * primitive.colors[vertices[1]].w +
@@ -65,7 +53,57 @@ float texture_alpha(const Frame& frame, const Primitive& primitive, const Textur
                           transform_uv(ref, b[0] * uv[vertices[0]] + b[1] * uv[vertices[1]] + b[2] * uv[vertices[2]]));
 }
 
+float transmission(const Frame& frame, const Material& material, const Primitive& primitive,
+                   const std::array<std::uint32_t, 3>& vertices, const float b[3]) {
+    const TextureRef& ref = material.transmission_texture;
+    const Pyramid* pyramid = frame.textures ? frame.textures->data(ref) : nullptr;
+    const std::vector<glm::vec2>& uv = primitive.texcoords[ref.texcoord == 1 ? 1 : 0];
+    if (!pyramid || uv.empty()) return material.transmission;
+    const glm::vec2 at = b[0] * uv[vertices[0]] + b[1] * uv[vertices[1]] + b[2] * uv[vertices[2]];
+    return material.transmission * pyramid->sample(ref, transform_uv(ref, at), 0.0f).x;
+}
+
 }  // namespace
+
+// Stratified over the pixel's samples, independent between triangles: two layers, also of one mesh, must not hide
+// together.
+float opacity_threshold(std::uint32_t triangle, int px, int py, int sample_index, int spp) {
+    const std::uint32_t pixel = mix(mix(static_cast<std::uint32_t>(px)) + static_cast<std::uint32_t>(py));
+    const std::uint32_t seed = mix(pixel + mix(triangle + 0x9e3779b9u));
+    const std::uint32_t index = static_cast<std::uint32_t>(sample_index);
+    const std::uint32_t n = static_cast<std::uint32_t>(std::max(1, spp));
+    const float offset = static_cast<float>(mix(seed + index + 1u) >> 8) * 0x1p-24f;
+    return std::min((static_cast<float>(permuted(index % n, n, seed)) + offset) / static_cast<float>(n),
+                    1.0f - 0x1p-24f);
+}
+
+OpacityTerms opacity_terms(const Frame& frame, std::uint32_t triangle) {
+    OpacityTerms terms;
+    const Part& part = frame.parts[frame.part_of[triangle]];
+    if (part.material == kNone) return terms;
+    const Material& material = frame.scene->materials[part.material];
+    terms.glass = material.transmission > 0.0f;
+    if (part.alpha_mode == AlphaMode::kOpaque || terms.glass) return terms;
+    const Primitive& primitive = frame.scene->meshes[part.placement.mesh].primitives[part.placement.primitive];
+    const std::array<std::uint32_t, 3> vertices = frame.vertices(triangle);
+    terms.mode = part.alpha_mode;
+    terms.cutoff = material.alpha_cutoff;
+    terms.factor = material.base_color.w;
+    terms.colored = !primitive.colors.empty();
+    for (int k = 0; terms.colored && k < 3; ++k) terms.color[k] = primitive.colors[vertices[k]].w;
+    const TextureRef& ref = material.base_color_texture;
+    const Pyramid* pyramid = frame.textures ? frame.textures->color(ref) : nullptr;
+    if (!pyramid) return terms;
+    const std::vector<glm::vec2>& uv = primitive.texcoords[ref.texcoord == 1 ? 1 : 0];
+    if (uv.empty() || pyramid->opacity_codes() == nullptr) {
+        terms.texture_alpha = pyramid->alpha(ref, transform_uv(ref, {0.0f, 0.0f}));
+        return terms;
+    }
+    terms.texture = pyramid;
+    terms.ref = &ref;
+    for (int k = 0; k < 3; ++k) terms.uv[k] = uv[vertices[k]];
+    return terms;
+}
 
 OpacityClass opacity_class(const Frame& frame, std::uint32_t triangle) {
     const Part& part = frame.parts[frame.part_of[triangle]];
@@ -89,20 +127,11 @@ bool is_opaque_at(const Frame& frame, std::uint32_t triangle, const float baryce
                         texture_alpha(frame, primitive, material.base_color_texture, vertices, barycentrics);
     if (part.alpha_mode == AlphaMode::kMask && !(alpha >= material.alpha_cutoff)) return false;
     float opacity = part.alpha_mode == AlphaMode::kBlend ? alpha : 1.0f;
-    if (material.transmission > 0.0f) {
-        const auto look_up = [&](const Pyramid* pyramid, const TextureRef& ref) {
-            const std::vector<glm::vec2>& uv = primitive.texcoords[ref.texcoord == 1 ? 1 : 0];
-            if (!pyramid || uv.empty()) return glm::vec4(1.0f);
-            const float* b = barycentrics;
-            const glm::vec2 at = b[0] * uv[vertices[0]] + b[1] * uv[vertices[1]] + b[2] * uv[vertices[2]];
-            return pyramid->sample(ref, transform_uv(ref, at), 0.0f);
-        };
-        const Textures* textures = frame.textures.get();
-        const TextureRef& glass = material.transmission_texture;
-        opacity *=
-            1.0f - see_through(material.transmission * look_up(textures ? textures->data(glass) : nullptr, glass).x);
-    }
-    return opacity > threshold(triangle, px, py, sample_index, spp);
+    if (material.transmission > 0.0f)
+        opacity *= 1.0f - see_through(transmission(frame, material, primitive, vertices, barycentrics));
+    else if (part.alpha_mode == AlphaMode::kMask)
+        return true;
+    return opacity > opacity_threshold(triangle, px, py, sample_index, spp);
 }
 
 }  // namespace pentaprism

@@ -3,6 +3,7 @@
 // stage, the references and later the shadow maps alike.
 
 #include <cstdint>
+#include <glm/vec2.hpp>
 
 #include "frame/frame.h"
 
@@ -14,6 +15,24 @@ namespace pentaprism {
 /// the samples of the pixel (Laine & Karras 2011). OPAQUE: true. Thread-safe; no allocation.
 bool is_opaque_at(const Frame& frame, std::uint32_t triangle, const float barycentrics[3], int px, int py,
                   int sample_index, int spp);
+
+/// What the opacity of one triangle is made of, for those who ask at many points: alpha = factor * (corner colours
+/// mixed) * (texture at the mixed, transformed coordinates), in this order of rounding.
+struct OpacityTerms {
+    AlphaMode mode = AlphaMode::kOpaque;
+    float cutoff = 0.5f, factor = 1.0f;
+    bool colored = false;
+    float color[3] = {1.0f, 1.0f, 1.0f};  ///< alpha of the corners' colours, if `colored`
+    const Pyramid* texture = nullptr;     ///< null: counts as `texture_alpha` everywhere
+    const TextureRef* ref = nullptr;      ///< of `texture`
+    glm::vec2 uv[3] = {};
+    float texture_alpha = 1.0f;
+    bool glass = false;  ///< light comes through as well: ask is_opaque_at()
+};
+OpacityTerms opacity_terms(const Frame& frame, std::uint32_t triangle);
+
+/// What alpha must exceed at a sample of a blended triangle; in [0, 1).
+float opacity_threshold(std::uint32_t triangle, int px, int py, int sample_index, int spp);
 
 /// Share of samples that see through a thin surface of this transmission (KHR_materials_transmission): as stochastic
 /// transparency, less than all, so that some samples are left to show what it reflects. Shading scales that up.

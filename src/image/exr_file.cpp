@@ -7,9 +7,11 @@
 #include <ImfFrameBuffer.h>
 #include <ImfFramesPerSecond.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputFile.h>
+#include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
@@ -21,9 +23,11 @@
 #include <limits>
 #include <new>
 #include <optional>
+#include <pentaprism/aov.h>
 #include <pentaprism/error.h>
 
 #include "base/parallel.h"
+#include "image/exr_stream.h"
 #include "image/part_file.h"
 #include "image/writers.h"
 
@@ -69,8 +73,8 @@ Imf::Header make_header(const FrameInfo& info, const FileMetadata& metadata) {
     header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
 
     Imf::addChromaticities(header, Imf::Chromaticities());  // the default is Rec. 709 with white at D65
-    const double exposure =
-        metadata.exposure_seconds > 0.0 ? metadata.exposure_seconds : info.shutter_close - info.shutter_open;
+    const double exposure = metadata.exposure_seconds > 0.0 ? metadata.exposure_seconds
+                                                            : info.shutter_close - info.shutter_open - info.readout;
     Imf::addExpTime(header, static_cast<float>(exposure));
     if (info.lens_radius > 0.0) {  // a pinhole has neither
         Imf::addFocus(header, static_cast<float>(info.focus_distance));
@@ -83,19 +87,29 @@ Imf::Header make_header(const FrameInfo& info, const FileMetadata& metadata) {
     header.insert("frame", Imf::DoubleAttribute(info.frame));
     if (!info.camera.empty()) header.insert("camera", Imf::StringAttribute(info.camera));
     if (!metadata.settings_json.empty()) header.insert("pentaprism", Imf::StringAttribute(metadata.settings_json));
+    for (const auto& [name, value] : info.attributes) header.insert(name, Imf::StringAttribute(value));
     return header;
 }
 
-class PartStream : public Imf::OStream {
-  public:
-    explicit PartStream(PartFile& file) : OStream(file.name().c_str()), file_(file) {}
-    void write(const char bytes[], int count) override { file_.write(bytes, static_cast<std::size_t>(count)); }
-    uint64_t tellp() override { return file_.position(); }
-    void seekp(uint64_t position) override { file_.seek(position); }
-
-  private:
-    PartFile& file_;
-};
+// The colour, then a part for each output variable, named after it and with its rule in words.
+std::vector<Imf::Header> make_part_headers(const FrameInfo& info, const FileMetadata& metadata) {
+    std::vector<Imf::Header> headers{make_header(info, metadata)};
+    headers[0].setName("rgba");
+    headers[0].setType(Imf::SCANLINEIMAGE);
+    for (const Aov aov : info.aovs) {
+        const AovInfo& about = aov_info(aov);
+        Imf::Header header(headers[0].displayWindow(), headers[0].dataWindow(), 1.0f, Imath::V2f(0, 0), 1.0f,
+                           Imf::INCREASING_Y, Imf::ZIP_COMPRESSION);
+        header.setName(about.name);
+        header.setType(Imf::SCANLINEIMAGE);
+        Imf::addChromaticities(header, Imf::Chromaticities());  // parts have to agree
+        header.insert("rule", Imf::StringAttribute(about.rule));
+        for (const ChannelInfo& channel : about.channels)
+            header.channels().insert(channel.name, Imf::Channel(channel.whole_number ? Imf::UINT : Imf::FLOAT));
+        headers.push_back(header);
+    }
+    return headers;
+}
 
 class ExrWriter : public PictureWriter {
   public:
@@ -105,7 +119,15 @@ class ExrWriter : public PictureWriter {
     void begin(const FrameInfo& info) override {
         order_.begin(info, file_.name());
         x0_ = info.x0;
-        guarded([&] { output_.emplace(stream_, make_header(info, metadata_)); });
+        aovs_ = info.aovs;
+        guarded([&] {
+            if (aovs_.empty()) {
+                output_.emplace(stream_, make_header(info, metadata_));
+            } else {
+                const std::vector<Imf::Header> headers = make_part_headers(info, metadata_);
+                parts_.emplace(stream_, headers.data(), static_cast<int>(headers.size()));
+            }
+        });
     }
 
     void rows(const PixelRows& band) override {
@@ -113,14 +135,19 @@ class ExrWriter : public PictureWriter {
         if (band.count == 0) return;
         to_halves(band);
         guarded([&] {
-            output_->setFrameBuffer(frame_buffer(band));
-            output_->writePixels(band.count);
+            if (aovs_.empty()) {
+                output_->setFrameBuffer(frame_buffer(band));
+                output_->writePixels(band.count);
+            } else {
+                write_parts(band);
+            }
         });
     }
 
     void finish() override {
         order_.finish();
         output_.reset();  // writes the table of line offsets, and is silent about failures
+        parts_.reset();
         file_.throw_if_failed();
         file_.commit();
     }
@@ -160,14 +187,37 @@ class ExrWriter : public PictureWriter {
         return buffer;
     }
 
+    void write_parts(const PixelRows& band) {
+        const auto write = [&](int part, const Imf::FrameBuffer& buffer) {
+            Imf::OutputPart output(*parts_, part);
+            output.setFrameBuffer(buffer);
+            output.writePixels(band.count);
+        };
+        write(0, frame_buffer(band));
+        const Imath::V2i origin(x0_, band.y0);
+        const auto pixels = static_cast<std::size_t>(band.width) * static_cast<std::size_t>(band.count);
+        const float* channel = band.aovs.data();
+        for (std::size_t i = 0; i < aovs_.size(); ++i) {
+            Imf::FrameBuffer buffer;
+            for (const ChannelInfo& about : aov_info(aovs_[i]).channels) {
+                buffer.insert(about.name, Imf::Slice::Make(about.whole_number ? Imf::UINT : Imf::FLOAT, channel, origin,
+                                                           band.width, band.count));
+                channel += pixels;
+            }
+            write(static_cast<int>(i) + 1, buffer);
+        }
+    }
+
     FileMetadata metadata_;
     RowOrder order_;
     int x0_ = 0;
+    std::vector<Aov> aovs_;
     std::vector<half> halves_;
     // Destroyed last to first: the output writes into the stream, the stream into the file.
     PartFile file_;
     PartStream stream_;
-    std::optional<Imf::OutputFile> output_;
+    std::optional<Imf::OutputFile> output_;          // of a picture of colour and depth alone
+    std::optional<Imf::MultiPartOutputFile> parts_;  // of one with more
 };
 
 void read_channels(Imf::InputFile& input, Picture& picture) {

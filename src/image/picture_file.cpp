@@ -30,6 +30,10 @@ bool is_picture_name(const std::filesystem::path& file) {
     return suffix == ".exr" || suffix == ".png";
 }
 
+bool is_exr_name(const std::filesystem::path& file) {
+    return lower_suffix(file) == ".exr";
+}
+
 std::unique_ptr<PictureWriter> make_picture_writer(const std::filesystem::path& file, const ImageSettings& image,
                                                    const FileMetadata& metadata) {
     const std::string suffix = lower_suffix(file);

@@ -2,6 +2,7 @@
 // goes through PngStruct::call(), whose frame holds none, and comes out as an exception.
 
 #include <algorithm>
+#include <cmath>
 #include <csetjmp>
 #include <cstdio>
 #include <exception>
@@ -156,6 +157,27 @@ class PngWriter : public PictureWriter {
 std::unique_ptr<PictureWriter> make_png_writer(const std::filesystem::path& file, const ImageSettings& image,
                                                const FileMetadata& metadata) {
     return std::make_unique<PngWriter>(file, image, metadata);
+}
+
+void write_depth_png(const std::filesystem::path& file, int width, int height, std::span<const float> metres) {
+    std::vector<std::uint8_t> bytes(2 * metres.size());
+    for (std::size_t i = 0; i < metres.size(); ++i) {
+        const float millimetres = std::isfinite(metres[i]) ? std::clamp(metres[i] * 1000.0f, 0.0f, 65535.0f) : 0.0f;
+        const auto value = static_cast<std::uint16_t>(std::lround(millimetres));
+        bytes[2 * i] = static_cast<std::uint8_t>(value >> 8);  // PNG has the high byte first
+        bytes[2 * i + 1] = static_cast<std::uint8_t>(value & 255);
+    }
+    PartFile part(file);
+    PngStruct png(part);
+    const std::uint8_t* from = bytes.data();
+    png.call([=](png_structp p, png_infop header) {
+        png_set_IHDR(p, header, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 16,
+                     PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+        png_write_info(p, header);
+        for (int y = 0; y < height; ++y) png_write_row(p, from + 2 * static_cast<std::size_t>(y) * width);
+        png_write_end(p, header);
+    });
+    part.commit();
 }
 
 Picture read_png(const std::filesystem::path& file) {

@@ -9,7 +9,7 @@ PosedPicture pose_picture(const Scene& scene, const RenderSettings& settings, do
     const View view = make_view(scene, settings, frame);
     Frame posed = pose_frame(scene, view, choose_animations(scene, settings.animation.animation), settings.shutter);
     posed.textures = make_textures(scene);
-    SampleTable samples(settings.image.spp, settings.method.seed, view.lens, grouping_for(posed));
+    SampleTable samples = make_samples(posed, settings.image.spp, settings.method);
     return {std::move(posed), std::move(samples)};
 }
 

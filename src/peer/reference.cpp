@@ -2,23 +2,17 @@
 
 #include <pentaprism/error.h>
 
-#ifdef PENTAPRISM_HAVE_EMBREE
-#include "peer/embree_reference.h"
-#endif
+#include "trace/tracer.h"
 
 namespace pentaprism {
 
-Reference make_reference([[maybe_unused]] const Frame& frame, [[maybe_unused]] const SampleTable& table) {
-#ifdef PENTAPRISM_HAVE_EMBREE
+Reference make_reference(const Frame& frame, const SampleTable& table) {
     try {
-        const auto embree = std::make_shared<const EmbreeReference>(frame, table, EmbreeOptions{});
-        return {embree_version(), [embree](const Tile& tile, Hits& hits) { embree->trace(tile, hits); }};
+        const std::shared_ptr<const Tracer> tracer = make_tracer(frame, table);
+        return {tracer_name(), [tracer](const Tile& tile, Hits& hits) { tracer->trace(tile, hits); }};
     } catch (const Error&) {
         return {};
     }
-#else
-    return {};
-#endif
 }
 
 }  // namespace pentaprism

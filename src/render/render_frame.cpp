@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <mutex>
+#include <optional>
 #include <pentaprism/error.h>
 #include <pentaprism/render.h>
 #include <sys/resource.h>
@@ -14,6 +16,7 @@
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "render/visibility.h"
+#include "resolve/aov_film.h"
 #include "resolve/film.h"
 #include "scene/texture.h"
 #include "shade/shade_tile.h"
@@ -49,7 +52,8 @@ void store(const glm::dmat4& matrix, std::array<double, 16>& out) {
         for (int row = 0; row < 4; ++row) out[4 * column + row] = matrix[column][row];
 }
 
-FrameInfo frame_info(const Frame& frame, const RenderSettings& settings, double number, const PixelRect& crop) {
+FrameInfo frame_info(const Frame& frame, std::span<const Index> animations, const RenderSettings& settings,
+                     double number, const PixelRect& crop) {
     const View& view = frame.view;
     FrameInfo info;
     info.width = view.width;
@@ -59,6 +63,7 @@ FrameInfo frame_info(const Frame& frame, const RenderSettings& settings, double 
     info.fps = settings.animation.fps;
     info.shutter_open = view.shutter.open;
     info.shutter_close = view.shutter.close;
+    info.readout = view.shutter.readout();
     info.lens_radius = view.lens.radius;
     info.focus_distance = view.lens.focus_distance;
     info.fstop = view.lens.fstop;
@@ -72,8 +77,17 @@ FrameInfo frame_info(const Frame& frame, const RenderSettings& settings, double 
     projection[2][2] = -1.0;
     projection[2][3] = view.perspective ? -1.0 : 0.0;
     projection[3][3] = view.perspective ? 0.0 : 1.0;
+    info.fx = view.fx;
+    info.fy = view.fy;
     store(to_camera, info.world_to_camera);
     store(projection * to_camera, info.world_to_ndc);
+    for (int k = 0; k <= info.max_motion_segments; ++k) {
+        FrameInfo::Knot knot;
+        knot.time = view.shutter.at(static_cast<double>(k) / info.max_motion_segments);
+        store(world_to_camera(view, evaluate(*frame.scene, animations, knot.time)), knot.world_to_camera);
+        info.knots.push_back(knot);
+        if (view.shutter.close == view.shutter.open) break;  // one instant
+    }
     return info;
 }
 
@@ -117,6 +131,7 @@ struct TileWorker {
     Hits hits;
     TileShader shader;
     TileShade shade;
+    AovFilm::Worker aovs;
 };
 
 struct TileCosts {
@@ -144,10 +159,43 @@ void render_tile(const Visibility& visibility, const ShadingScene& shading, cons
     costs.covered += counts.covered;
 }
 
-void deliver(Film& film, int rendered_to, bool last, RowSink& sink) {
-    const PixelRows rows = film.take_rows(rendered_to, last);
-    if (rows.count > 0) sink.rows(rows);
+void deliver(Film& film, AovFilm* aovs, int rendered_to, bool last, RowSink& sink) {
+    PixelRows rows = film.take_rows(rendered_to, last);
+    if (rows.count == 0) return;
+    if (aovs) rows.aovs = aovs->rows(rows.y0, rows.count);
+    sink.rows(rows);
 }
+
+// What output variables look up beside the frame itself; made only for those that need it.
+struct AovTables {
+    std::optional<FrameIds> ids;
+    std::optional<Flow> flow;
+
+    AovTables(const Frame& frame, const RenderSettings& settings, double number) {
+        const auto asks = [&](std::initializer_list<Aov> some) {
+            return std::any_of(some.begin(), some.end(), [&](Aov aov) {
+                return std::find(settings.image.aovs.begin(), settings.image.aovs.end(), aov) !=
+                       settings.image.aovs.end();
+            });
+        };
+        if (asks({Aov::kObjectId, Aov::kMaterialId, Aov::kCryptomatte, Aov::kTime})) ids.emplace(frame);
+        if (asks({Aov::kMotion})) flow.emplace(*frame.scene, settings, number);
+    }
+
+    // Names of what the numbers in a picture stand for.
+    void describe(std::span<const Aov> aovs, FrameInfo& info) const {
+        info.aovs.assign(aovs.begin(), aovs.end());
+        for (const Aov aov : aovs) {
+            if (aov == Aov::kObjectId) info.attributes.emplace_back("objects", ids->objects.json());
+            if (aov == Aov::kMaterialId) info.attributes.emplace_back("materials", ids->materials.json());
+            if (aov != Aov::kCryptomatte) continue;
+            for (const auto& attribute : ids->objects.cryptomatte_attributes("CryptoObject"))
+                info.attributes.push_back(attribute);
+            for (const auto& attribute : ids->materials.cryptomatte_attributes("CryptoMaterial"))
+                info.attributes.push_back(attribute);
+        }
+    }
+};
 
 }  // namespace
 
@@ -172,7 +220,7 @@ void Renderer::render(const RenderSettings& settings, double number, RowSink& si
     Frame frame = pose_frame(scene_, view, animations, settings.shutter);
     frame.textures = textures_;
     const auto posed = Clock::now();
-    const SampleTable samples(settings.image.spp, settings.method.seed, view.lens, grouping_for(frame));
+    const SampleTable samples = make_samples(frame, settings.image.spp, settings.method);
     const auto sampled = Clock::now();
 
     const PixelRect crop = crop_of(settings.image);
@@ -194,7 +242,18 @@ void Renderer::render(const RenderSettings& settings, double number, RowSink& si
                                        rate_of(settings.method.shading), settings.image.spp, environment_});
     const auto prepared = Clock::now();
 
-    sink.begin(frame_info(frame, settings, number, crop));
+    FrameInfo info = frame_info(frame, animations, settings, number, crop);
+    const AovTables aov_tables(frame, settings, number);
+    aov_tables.describe(settings.image.aovs, info);
+    std::optional<AovFilm> aov_film;
+    if (!settings.image.aovs.empty())
+        aov_film.emplace(settings.image.aovs,
+                         AovSources{&shading, aov_tables.ids ? &*aov_tables.ids : nullptr,
+                                    aov_tables.flow ? &*aov_tables.flow : nullptr, film_settings.background,
+                                    static_cast<float>(std::exp2(settings.image.exposure))},
+                         crop.x0, crop.x1, film_settings.band_rows + 2 * film.reach() + 1);
+
+    sink.begin(info);
     const std::vector<Tile>& tiles = visibility.tiles();
     ProgressMeter meter(progress, tiles.size());
     Pool<TileWorker> workers;
@@ -205,10 +264,12 @@ void Renderer::render(const RenderSettings& settings, double number, RowSink& si
         while (last < tiles.size() && tiles[last].y1 <= band_end) ++last;
         parallel_for(last - first, [&](std::size_t i) {
             const auto worker = workers.lease();
-            render_tile(visibility, shading, samples, tiles[first + i], *worker, film, costs);
+            const Tile& tile = tiles[first + i];
+            render_tile(visibility, shading, samples, tile, *worker, film, costs);
+            if (aov_film) aov_film->add(tile, samples, worker->hits, worker->shade, crop.y0, crop.y1, worker->aovs);
             meter.step();
         });
-        deliver(film, tiles[last - 1].y1, last == tiles.size(), sink);
+        deliver(film, aov_film ? &*aov_film : nullptr, tiles[last - 1].y1, last == tiles.size(), sink);
         first = last;
     }
     const auto done = Clock::now();
@@ -251,6 +312,12 @@ Picture render_picture(const Scene& scene, const RenderSettings& settings, doubl
         void rows(const PixelRows& band) override {
             picture.rgba.insert(picture.rgba.end(), band.rgba.begin(), band.rgba.end());
             picture.z.insert(picture.z.end(), band.z.begin(), band.z.end());
+            // Channels lie one after the other in a band and in the picture.
+            const std::size_t pixels = band.z.size(), all = std::size_t(picture.width) * picture.height;
+            const std::size_t channels = band.aovs.size() / pixels, first = picture.z.size() - pixels;
+            picture.aovs.resize(channels * all);
+            for (std::size_t c = 0; c < channels; ++c)
+                std::copy_n(band.aovs.begin() + c * pixels, pixels, picture.aovs.begin() + c * all + first);
         }
     } collector;
     render_frame(scene, settings, frame, collector, stats);
@@ -258,9 +325,15 @@ Picture render_picture(const Scene& scene, const RenderSettings& settings, doubl
 }
 
 std::vector<CullingChoice> culling_tests() {
-    std::vector<CullingChoice> choices{{"auto", "vectors of samples, strata bounds, depth hierarchy: the fast path"}};
-    for (const CullTest* test : cull_table()) choices.push_back({test->name, test->paper});
+    std::vector<CullingChoice> choices{
+        {"auto", "vectors of samples, strata bounds, depth hierarchy: the fast path", "bucket"}};
+    for (const CullTest* test : cull_table())
+        choices.push_back({test->name, test->paper, name_of(test->grain), test->conservative});
     return choices;
+}
+
+void check_culling(const std::string& culling) {
+    if (culling != "auto") parse_culling(culling);
 }
 
 std::string cpu_target() {

@@ -1,17 +1,19 @@
 #include "render/visibility.h"
 
 #include <algorithm>
-#include <pentaprism/error.h>
 
 namespace pentaprism {
 namespace {
 
-const CullTest* choose_test(const std::string& name) {
-    if (name == "auto") return nullptr;
-    if (const CullTest* test = find_cull_test(name)) return test;
-    std::string names = "auto";
-    for (const CullTest* test : cull_table()) names += std::string(", ") + test->name;
-    throw Error(ErrorKind::kUsage, "no culling test '" + name + "'; there are: " + names);
+SamplePattern pattern_for(VisibilityMethod method) {
+    switch (method) {
+        case VisibilityMethod::kAccumulation:
+            return SamplePattern::kAccumulation;
+        case VisibilityMethod::kInterleaved:
+            return SamplePattern::kInterleaved;
+        default:
+            return SamplePattern::kFree;
+    }
 }
 
 }  // namespace
@@ -23,20 +25,37 @@ Grouping grouping_for(const Frame& frame) {
     return motion ? (defocus ? Grouping::kBoth : Grouping::kMotion) : (defocus ? Grouping::kDefocus : Grouping::kStill);
 }
 
+SampleTable make_samples(const Frame& frame, int spp, const MethodSettings& method) {
+    return SampleTable(spp, method.seed, frame.view.lens, grouping_for(frame), pattern_for(method.visibility),
+                       SampleTimes(frame.view.shutter, frame.view.width, frame.view.height));
+}
+
 Visibility::Visibility(const Frame& frame, const SampleTable& samples, const MethodSettings& method,
                        const PixelRect& limits)
-    : frame_(frame), samples_(samples), test_(choose_test(method.culling)), bins_(frame, method.tile_size, limits) {
+    : frame_(frame),
+      samples_(samples),
+      method_(method.visibility),
+      culling_(method.culling == "auto" ? Culling() : parse_culling(method.culling)) {
+    if (method_ == VisibilityMethod::kRaytrace)
+        tracer_ = make_tracer(frame, samples);
+    else
+        bins_.emplace(frame, method.tile_size, limits);
     const int size = method.tile_size;
     for (int y = limits.y0 / size * size; y < limits.y1; y += size)
         for (int x = limits.x0 / size * size; x < limits.x1; x += size)
             tiles_.push_back({x, y, std::min(x + size, limits.x1), std::min(y + size, limits.y1)});
 }
 
-void Visibility::cover(const Tile& tile, Hits& hits, CoverCounts& counts) const {
+void Visibility::cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map) const {
     hits.reset(samples_.slots());
-    const TileWork work{frame_, samples_, bins_.triangles(), bins_.tile(tile.x0, tile.y0), tile};
-    if (test_ != nullptr)
-        cover_with_test(work, *test_, hits, counts);
+    if (tracer_) return tracer_->trace(tile, hits);
+    const TileWork work{frame_, samples_, bins_->triangles(), bins_->tile(tile.x0, tile.y0), tile, map};
+    if (method_ == VisibilityMethod::kMicropolygon)
+        cover_micropolygons(work, hits, counts);
+    else if (!culling_.empty())
+        cover_with_test(work, culling_, hits, counts);
+    else if (samples_.pattern() != SamplePattern::kFree)
+        cover_shared(work, hits, counts);
     else
         cover_vectors(work, hits, counts);
 }

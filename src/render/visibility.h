@@ -1,35 +1,47 @@
 #pragma once
-// Visibility of a posed frame: bound, bin, cull and cover behind one door. What render_frame, verify and the timing
-// against peers call alike.
+// Visibility of a posed frame behind one door, by whichever method: bound, bin, cull and cover, or trace. What
+// render_frame, verify and the timing against peers call alike.
+
+#include <memory>
+#include <optional>
 
 #include "bin/bins.h"
 #include "cover/cover.h"
 #include "frame/frame.h"
 #include "sample/sample_table.h"
+#include "trace/tracer.h"
 
 namespace pentaprism {
 
 class Visibility {
   public:
-    /// Bins the frame. `limits`: the pixels that will be asked for, within the picture. `frame` and `samples` must
-    /// outlive this. Throws Error(kUsage) for a culling test that does not exist.
+    /// Bins the frame, or builds the tracer. `limits`: the pixels that will be asked for, within the picture. `frame`
+    /// and `samples`, of make_samples() for the same method, must outlive this. Throws Error(kUsage) for a culling test
+    /// that does not exist, Error(kBackend) for a tracer that is not there.
     Visibility(const Frame& frame, const SampleTable& samples, const MethodSettings& method, const PixelRect& limits);
 
     /// Tiles that cover the limits, rows from top to bottom, each row from left to right.
     const std::vector<Tile>& tiles() const { return tiles_; }
 
-    /// Fills the tile's hits. Thread-safe: each caller brings its own Hits.
-    void cover(const Tile& tile, Hits& hits, CoverCounts& counts) const;
+    /// Fills the tile's hits. Thread-safe: each caller brings its own Hits and may share a map of the whole picture, in
+    /// which tiles write different pixels.
+    void cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map = nullptr) const;
 
-    std::int64_t binned_triangles() const { return static_cast<std::int64_t>(bins_.triangles().size()); }
+    /// 0 for a tracer.
+    std::int64_t binned_triangles() const { return bins_ ? static_cast<std::int64_t>(bins_->triangles().size()) : 0; }
 
   private:
     const Frame& frame_;
     const SampleTable& samples_;
-    const CullTest* test_;  ///< nullptr: the fast path
-    Bins bins_;
+    VisibilityMethod method_;
+    Culling culling_;  ///< empty: the fast path
+    std::optional<Bins> bins_;
+    std::unique_ptr<const Tracer> tracer_;
     std::vector<Tile> tiles_;
 };
+
+/// The samples of a picture as the method wants them.
+SampleTable make_samples(const Frame& frame, int spp, const MethodSettings& method);
 
 /// What blurs in this frame: how its samples are best grouped.
 Grouping grouping_for(const Frame& frame);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "base/parallel.h"
 #include "sample/aperture.h"
@@ -71,7 +72,8 @@ class BlockPattern {
     std::uint32_t block_;
 };
 
-SamplePoint to_sample(const RawSample& raw, int spp, const Lens& lens) {
+// `strata`: intervals of the shutter, one of which is raw.stratum_t.
+SamplePoint to_sample(const RawSample& raw, int strata, const Lens& lens, const SampleTimes& times) {
     constexpr double kUnit = 1.0 / 4294967296.0;
     SamplePoint sample;
     sample.x = static_cast<float>(raw.x >> 24) / 256.0f;
@@ -81,8 +83,8 @@ SamplePoint to_sample(const RawSample& raw, int spp, const Lens& lens) {
     sample.u = std::clamp(static_cast<float>(uv.x), -1.0f, 1.0f);
     sample.v = std::clamp(static_cast<float>(uv.y), -limit, limit);
     const std::uint64_t t =
-        ((static_cast<std::uint64_t>(raw.stratum_t) << 24) | raw.jitter_t) / static_cast<unsigned>(spp);
-    sample.t = static_cast<float>(t) / 16777216.0f;
+        ((static_cast<std::uint64_t>(raw.stratum_t) << 24) | raw.jitter_t) / static_cast<unsigned>(strata);
+    sample.t = times.within_exposure(static_cast<std::uint32_t>(t));
     return sample;
 }
 
@@ -157,8 +159,17 @@ void extend(Domain& domain, const Domain& other) {
 
 }  // namespace
 
-SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping grouping)
-    : spp_(spp), period_(period_for(spp)), seed_(seed), grouping_(grouping) {
+SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping wanted, SamplePattern pattern,
+                         SampleTimes times)
+    : spp_(spp),
+      period_(period_for(spp)),
+      seed_(seed),
+      grouping_(pattern == SamplePattern::kFree ? wanted : Grouping::kStill),
+      pattern_(pattern),
+      times_(std::move(times)) {
+    const Grouping grouping = grouping_;
+    std::optional<SharedTriples> shared;
+    if (pattern != SamplePattern::kFree) shared.emplace(pattern, spp, seed);
     const int cells = period_ / kCellSize;
     const std::size_t blocks = static_cast<std::size_t>(cells) * cells * kBlocksPerCell;
     vectors_.resize(blocks * spp);
@@ -169,16 +180,24 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
 
     parallel_for(blocks, [&](std::size_t b) {
         const int cell = static_cast<int>(b) / kBlocksPerCell, in_cell = static_cast<int>(b) % kBlocksPerCell;
-        const BlockPattern pattern(spp, seed, cell % cells * kCellBlocks + in_cell % kCellBlocks,
-                                   cell / cells * kCellBlocks + in_cell / kCellBlocks);
+        const BlockPattern block_pattern(spp, seed, cell % cells * kCellBlocks + in_cell % kCellBlocks,
+                                         cell / cells * kCellBlocks + in_cell / kCellBlocks);
         domains[b].fill(kEmptyDomain);
         const bool by_lens = grouping == Grouping::kDefocus || grouping == Grouping::kBoth;
-        const std::vector<std::uint16_t> order = by_lens ? lens_order(pattern, spp) : std::vector<std::uint16_t>();
+        const std::vector<std::uint16_t> order =
+            by_lens ? lens_order(block_pattern, spp) : std::vector<std::uint16_t>();
         for (int index = 0; index < spp; ++index) {
-            const std::uint32_t base_u = pattern.base_u(index), base_v = pattern.base_v(index);
+            const std::uint32_t base_u = block_pattern.base_u(index), base_v = block_pattern.base_v(index);
             for (int lane = 0; lane < kLanes; ++lane) {
-                const RawSample raw = pattern.sample(lane, index);
-                const SamplePoint sample = to_sample(raw, spp, lens);
+                RawSample raw = block_pattern.sample(lane, index);
+                if (shared) {
+                    const int column = in_cell % kCellBlocks * kBlockSize + lane % kBlockSize;
+                    const int row = in_cell / kCellBlocks * kBlockSize + lane / kBlockSize;
+                    const RawTriple triple = shared->triple(
+                        shared->triple_of(cell % cells * kCellSize + column, cell / cells * kCellSize + row, index));
+                    raw = {raw.x, raw.y, triple.u, triple.v, triple.stratum_t, triple.jitter_t};
+                }
+                const SamplePoint sample = to_sample(raw, shared ? shared->count() : spp, lens, times_);
                 const int slot = by_lens                         ? order[index]
                                  : grouping == Grouping::kMotion ? static_cast<int>(raw.stratum_t)
                                                                  : index;
@@ -213,6 +232,46 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
             strata_[cell].push_back(
                 {static_cast<std::uint16_t>(key.first), static_cast<std::uint16_t>(key.second), blocks_mask});
     }
+    if (shared) arrange_by_triple(*shared);
+}
+
+void SampleTable::arrange_by_triple(const SharedTriples& shared) {
+    block_side_ = shared.block_side();
+    triples_.resize(shared.count());
+    const int cells = period_ / kCellSize, side = kCellSize / block_side_;
+    const std::size_t per_cell = std::size_t{kCellSize} * kCellSize * spp_;
+    shared_x_.resize(per_cell * cells * cells);
+    shared_y_.resize(shared_x_.size());
+    shared_places_.resize(shared_x_.size());
+    for (int cell = 0; cell < cells * cells; ++cell)
+        for (int pixel = 0; pixel < kCellSize * kCellSize; ++pixel) {
+            const int column = pixel % kCellSize, row = pixel / kCellSize;
+            const int block = row / kBlockSize * kCellBlocks + column / kBlockSize;
+            const int lane = row % kBlockSize * kBlockSize + column % kBlockSize;
+            for (int index = 0; index < spp_; ++index) {
+                const int triple =
+                    shared.triple_of(cell % cells * kCellSize + column, cell / cells * kCellSize + row, index);
+                const std::size_t place = (static_cast<std::size_t>(block) * spp_ + index) * kLanes + lane;
+                const SampleVector& vector = vectors_[cell * (per_cell / kLanes) + place / kLanes];
+                const std::size_t to = cell * per_cell +
+                                       (static_cast<std::size_t>(triple) * side + row / block_side_) * side +
+                                       column / block_side_;
+                shared_x_[to] = vector.x[lane];
+                shared_y_[to] = vector.y[lane];
+                shared_places_[to] = static_cast<std::uint32_t>(place);
+                triples_[triple] = {vector.u[lane], vector.v[lane], vector.t[lane]};
+            }
+        }
+}
+
+SharedSamples SampleTable::shared(int cx, int cy) const {
+    const std::size_t per_cell = std::size_t{kCellSize} * kCellSize * spp_, first = cell_index(cx, cy) * per_cell;
+    return {block_side_,
+            kCellSize / block_side_,
+            triples_,
+            std::span<const float>(shared_x_.data(), shared_x_.size()).subspan(first, per_cell),
+            std::span<const float>(shared_y_.data(), shared_y_.size()).subspan(first, per_cell),
+            std::span(shared_places_).subspan(first, per_cell)};
 }
 
 // The picture is paved with periods, each shifted by a whole number of cells so that repetitions do not line up.
@@ -233,9 +292,39 @@ std::span<const SampleVector> SampleTable::block(int bx, int by) const {
     return std::span(vectors_).subspan(block_index(bx, by) * spp_, spp_);
 }
 
-std::span<const SampleVector> SampleTable::cell(int cx, int cy) const {
+std::span<const SampleVector> SampleTable::block(int bx, int by, std::vector<SampleVector>& room) const {
+    const std::span<const SampleVector> stored = block(bx, by);
+    if (!times_.roll()) return stored;
+    room.assign(stored.begin(), stored.end());
+    roll(room, bx / kCellBlocks, by / kCellBlocks);
+    return room;
+}
+
+std::span<const SampleVector> SampleTable::cell(int cx, int cy, std::vector<SampleVector>& room) const {
     const std::size_t vectors = static_cast<std::size_t>(kBlocksPerCell) * spp_;
-    return std::span(vectors_).subspan(cell_index(cx, cy) * vectors, vectors);
+    const auto stored = std::span(vectors_).subspan(cell_index(cx, cy) * vectors, vectors);
+    if (!times_.roll()) return stored;
+    room.assign(stored.begin(), stored.end());
+    roll(room, cx, cy);
+    return room;
+}
+
+// Offsets from the middle of the cell are multiples of 1/256, so the places are exact.
+void SampleTable::roll(std::span<SampleVector> vectors, int cx, int cy) const {
+    const double x = kCellSize * (cx + 0.5), y = kCellSize * (cy + 0.5);
+    for (SampleVector& v : vectors)
+        for (int lane = 0; lane < kLanes; ++lane) v.t[lane] = times_.at(v.t[lane], x + v.x[lane], y - v.y[lane]);
+}
+
+std::span<const Domain> SampleTable::domains(int cx, int cy, std::vector<Domain>& room) const {
+    if (!times_.roll()) return domains_;
+    room.assign(domains_.begin(), domains_.end());
+    const double x = kCellSize * static_cast<double>(cx), y = kCellSize * static_cast<double>(cy);
+    for (Domain& d : room) {
+        const auto [t0, t1] = times_.range(d.t0, d.t1, x, x + kCellSize, y, y + kCellSize);
+        d.t0 = t0, d.t1 = t1;
+    }
+    return room;
 }
 
 std::span<const std::uint16_t> SampleTable::indices(int bx, int by) const {
@@ -256,7 +345,9 @@ SamplePoint SampleTable::sample(int px, int py, int index) const {
     const SampleVector& vector = block(px / kBlockSize, py / kBlockSize)[slot_of(px, py, index)];
     const int block = py % kCellSize / kBlockSize * kCellBlocks + px % kCellSize / kBlockSize;
     const LocalOffset place = local_offset(block, lane);
-    return {vector.x[lane] - place.x, place.y - vector.y[lane], vector.u[lane], vector.v[lane], vector.t[lane]};
+    const float x = vector.x[lane] - place.x, y = place.y - vector.y[lane];
+    return {x, y, vector.u[lane], vector.v[lane],
+            times_.at(vector.t[lane], px + static_cast<double>(x), py + static_cast<double>(y))};
 }
 
 }  // namespace pentaprism

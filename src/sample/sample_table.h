@@ -7,7 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "base/aligned.h"
 #include "camera/view.h"
+#include "sample/sample_times.h"
+#include "sample/shared_triples.h"
 
 namespace pentaprism {
 
@@ -37,21 +40,42 @@ struct Domain {
 /// Which coordinates the samples of one vector share closely: those that blur.
 enum class Grouping : std::uint8_t { kStill, kMotion, kDefocus, kBoth };
 
+/// The samples of a cell by their lens position and time, for patterns that share these among pixels.
+struct SharedSamples {
+    struct Triple {
+        float u, v, t;
+    };
+    int block_side = 1;               ///< K: a triple has one sample in each block of K x K pixels
+    int side = 0;                     ///< blocks a side of the cell: 32 / K
+    std::span<const Triple> triples;  ///< by time
+    /// [(triple * side + row) * side + column]: the sample in block (column, row) of the cell. x, y as in SampleVector;
+    /// place: its entry in Hits. x and y begin on a cache line.
+    std::span<const float> x, y;
+    std::span<const std::uint32_t> place;
+};
+
 class SampleTable {
   public:
-    /// Cost and memory: period^2 * spp * 20 bytes, at most about 90 MB.
-    SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping grouping);
+    /// Cost and memory: period^2 * spp * 20 bytes, at most about 90 MB; shared patterns 12 bytes a sample more. These
+    /// arrange samples by index, whatever the grouping, and know no rolling shutter.
+    SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping grouping,
+                SamplePattern pattern = SamplePattern::kFree, SampleTimes times = {});
 
     int spp() const { return spp_; }
     int slots() const { return spp_; }  ///< vectors of a block
     Grouping grouping() const { return grouping_; }
+    SamplePattern pattern() const { return pattern_; }
 
     /// Blocks are addressed in the whole picture: block (bx, by) covers pixels [4 bx, 4 bx + 4) x [4 by, 4 by + 4).
+    /// A rolling shutter gives each place times of its own: its vectors are written into `room`, which serves again.
+    std::span<const SampleVector> block(int bx, int by, std::vector<SampleVector>& room) const;
+
+    /// The same, but with a rolling shutter each t is within the exposure of its row: for x, y, u and v.
     std::span<const SampleVector> block(int bx, int by) const;
 
     /// All vectors of a cell: [block * slots + slot], block = 8 * (row in the cell) + column, the order of Hits. Cells
     /// are addressed in the whole picture: cell (cx, cy) covers pixels [32 cx, 32 cx + 32) x ...
-    std::span<const SampleVector> cell(int cx, int cy) const;
+    std::span<const SampleVector> cell(int cx, int cy, std::vector<SampleVector>& room) const;
 
     /// Sample index (0 .. spp - 1) of each lane of each slot of a block: at [slot * kLanes + lane]. The inverse for one
     /// lane is slot_of().
@@ -63,8 +87,9 @@ class SampleTable {
     /// Slot that holds sample `index` of the pixel.
     int slot_of(int px, int py, int index) const;
 
-    /// Strata of (u, v, t): all samples of a stratum lie in domains()[stratum] wherever they are in the picture.
-    std::span<const Domain> domains() const { return domains_; }
+    /// Strata of (u, v, t): all samples of a stratum in that cell lie in domains(...)[stratum]. Without a rolling
+    /// shutter wherever they are in the picture.
+    std::span<const Domain> domains(int cx, int cy, std::vector<Domain>& room) const;
 
     /// The vectors of a cell by stratum: slot `slot` of the blocks in `blocks` (bit 8 * row + column) lies in
     /// `stratum`.
@@ -74,18 +99,30 @@ class SampleTable {
     };
     std::span<const Stratum> strata(int cx, int cy) const;
 
+    /// Of a pattern that is not kFree.
+    SharedSamples shared(int cx, int cy) const;
+
   private:
+    void roll(std::span<SampleVector> vectors, int cx, int cy) const;
     std::size_t cell_index(int cx, int cy) const;
     std::size_t block_index(int bx, int by) const;
+    void arrange_by_triple(const SharedTriples& shared);
 
     int spp_, period_;
     std::uint32_t seed_;
     Grouping grouping_;
+    SamplePattern pattern_;
+    SampleTimes times_;
     std::vector<SampleVector> vectors_;   // [cell of the period][block][slot]
     std::vector<std::uint16_t> indices_;  // [block][slot][lane]
     std::vector<std::uint16_t> slots_;    // [block][lane][index]
     std::vector<Domain> domains_;
     std::vector<std::vector<Stratum>> strata_;  // by cell of the period
+    // Shared patterns: [cell of the period], then as in SharedSamples.
+    int block_side_ = 1;
+    std::vector<SharedSamples::Triple> triples_;
+    AlignedVector<float> shared_x_, shared_y_;
+    std::vector<std::uint32_t> shared_places_;
 };
 
 }  // namespace pentaprism

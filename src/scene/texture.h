@@ -44,6 +44,9 @@ class Pyramid {
         return opacity_.empty() ? levels_[0].texels[3] : opacity_[static_cast<std::size_t>(y) * width() + x];
     }
 
+    /// All of them, row by row; null if every texel of level 0 has the same opacity, that of opacity_code(0, 0).
+    const std::uint8_t* opacity_codes() const { return opacity_.empty() ? nullptr : opacity_.data(); }
+
     /// One decoded texel, for tests; x and y inside the level.
     glm::vec4 texel(int level, int x, int y) const;
 

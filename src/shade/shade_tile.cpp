@@ -127,7 +127,7 @@ class TileShader::LocalRun {
 class TileShader::CellSamples {
   public:
     CellSamples(const SampleTable& samples, const Tile& tile) {
-        vectors_ = samples.cell(tile.cell_x(), tile.cell_y());
+        vectors_ = samples.cell(tile.cell_x(), tile.cell_y(), room_);
         slots_ = static_cast<std::size_t>(samples.slots());
     }
     LocalSample at(int pixel, int slot) const {
@@ -137,6 +137,7 @@ class TileShader::CellSamples {
     }
 
   private:
+    std::vector<SampleVector> room_;
     std::span<const SampleVector> vectors_;
     std::size_t slots_;
 };

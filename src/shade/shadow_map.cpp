@@ -228,7 +228,8 @@ std::unique_ptr<float[]> ShadowMap::render(int exponent, int cx, int cy, const L
         if (rect.empty()) continue;
         scratch.binned.push_back({box.triangle, box.segment, static_cast<std::uint16_t>(rect.x0),
                                   static_cast<std::uint16_t>(rect.x1), static_cast<std::uint16_t>(rect.y0),
-                                  static_cast<std::uint16_t>(rect.y1), frame_.view.perspective ? box.nearest : 1.0f});
+                                  static_cast<std::uint16_t>(rect.y1), Facing::kMixed,
+                                  frame_.view.perspective ? box.nearest : 1.0f});
     }
     scratch.order.resize(scratch.binned.size());
     std::iota(scratch.order.begin(), scratch.order.end(), 0u);
@@ -304,13 +305,14 @@ float ShadowMap::lit(const ShadowReceiver& receiver, std::uint32_t seed) const {
     int last_x = -1, last_y = -1, lit = 0;
     const float* depth_of = nullptr;
     const SampleVector* samples = nullptr;
+    std::vector<SampleVector> room;  // stays empty: the map's shutter does not roll
     CellCentre centre{0.0f, 0.0f};
     const auto sample_at = [&](const glm::vec2& p) {
         const int px = static_cast<int>(p.x + half), py = static_cast<int>(half - p.y);
         const int cx = px / kCellSize, cy = py / kCellSize;
         if (cx != last_x || cy != last_y) {
             depth_of = depths(exponent, cx, cy);
-            samples = table_.cell(cx, cy).data();
+            samples = table_.cell(cx, cy, room).data();
             centre = cell_centre(frame_.view, cx, cy);
             last_x = cx, last_y = cy;
         }

@@ -9,22 +9,15 @@ while read -r option value; do
 done <<'END'
 --focus-range 1,2
 --max-foreground-blur 5
---shutter-curve trapezoid:0.1,0.9
---rolling-shutter top
---rolling-shutter-duration 0.5
---visibility accumulation
---visibility interleaved
---visibility raytrace
 --backend gl
 --sampler sobol
---aov depth,normal
---sharp
---dataset out
+--aov depth,albedo
+--aov ste
 --samples dump
 --resume
 --shard 1/4
 END
-for command in bench merge view; do
+for command in merge view; do
     refuses 2 "$command is not built yet \(planned: see CHANGELOG\)" "$command" some thing --option
     check "$command is in the help" grep -q "^  $command .*not built yet" <(help_of)
 done

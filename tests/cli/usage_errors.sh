@@ -57,8 +57,14 @@ done <<'END'
 --shutter -0.5 --shutter
 --shutter 1e999 --shutter
 --shutter-position middle --shutter-position
---shutter-curve sine --shutter-curve
---rolling-shutter diagonal --rolling-shutter
+--shutter-curve sine --shutter-curve: sine cannot be read
+--shutter-curve trapezoid:0.1 --shutter-curve.*trapezoid:OPEN,CLOSE
+--shutter-curve trapezoid:0.8,0.2 --shutter-curve: times rise
+--shutter-curve trapezoid:-1,0.2 --shutter-curve: times rise
+--shutter-curve trapezoid:0.1,nan --shutter-curve
+--rolling-shutter diagonal --rolling-shutter: 'diagonal' is not one of none, top, bottom, left, right
+--rolling-shutter-duration 0.5 --rolling-shutter-duration: nothing rolls
+--rolling-shutter-duration -1 --rolling-shutter-duration
 --motion-segments 0 --motion-segments
 --motion-segments 65 --motion-segments
 --fps 0 --fps
@@ -71,6 +77,10 @@ done <<'END'
 --frames 1,1 listed twice
 --frames 1-3 3 frames need a place for their number
 --culling psychic --culling: 'psychic' is not one of auto
+--culling none+psychic --culling: 'psychic' is not one of auto
+--culling none+ --culling: '' is not one of auto
+--culling none+auto 'auto' stands alone
+--culling hull@town --culling hull@town: 'town' is not one of tile, pixel, bucket
 --visibility xray --visibility
 --backend quantum --backend
 --shading never --shading

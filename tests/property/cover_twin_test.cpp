@@ -1,14 +1,12 @@
-// The vector kernels of every CPU target, and the scalar path with and without culling, give the same depths and
-// triangles bit for bit.
-#include <cstdlib>
+// The vector kernels of every CPU target, those for samples that share lens position and time, and the scalar path with
+// and without culling, give the same depths and triangles bit for bit.
 #include <cstring>
 #include <gtest/gtest.h>
 #include <map>
-#include <pentaprism/error.h>
 #include <string>
 
-#include "base/cpu.h"
 #include "render/visibility.h"
+#include "support/isa.h"
 #include "support/soup.h"
 
 namespace pentaprism {
@@ -16,46 +14,20 @@ namespace {
 
 using support::effort;
 using support::Hard;
+using support::has_isa;
 using support::make_soup;
 using support::Random;
 using support::Soup;
+using support::UseIsa;
 
-// The CPU target of the environment while this lives.
-class UseIsa {
-  public:
-    explicit UseIsa(const char* name) {
-        if (const char* old = std::getenv("PENTAPRISM_ISA")) old_ = old;
-        setenv("PENTAPRISM_ISA", name, 1);
-    }
-    ~UseIsa() {
-        if (old_.empty())
-            unsetenv("PENTAPRISM_ISA");
-        else
-            setenv("PENTAPRISM_ISA", old_.c_str(), 1);
-    }
-
-  private:
-    std::string old_;
-};
-
-bool has_isa(const char* name) {
-    const UseIsa use(name);
-    try {
-        cpu_isa();
-        return true;
-    } catch (const Error&) {
-        return false;
-    }
-}
-
-const SampleTable& table(int spp, Grouping grouping, double ratio) {
-    static std::map<std::tuple<int, Grouping, double>, SampleTable> tables;
-    const auto key = std::tuple(spp, grouping, ratio);
+const SampleTable& table(int spp, Grouping grouping, double ratio, SamplePattern pattern = SamplePattern::kFree) {
+    static std::map<std::tuple<int, Grouping, double, SamplePattern>, SampleTable> tables;
+    const auto key = std::tuple(spp, grouping, ratio, pattern);
     auto found = tables.find(key);
     if (found == tables.end()) {
         Lens lens;
         lens.ratio = ratio;
-        found = tables.emplace(key, SampleTable(spp, 7, lens, grouping)).first;
+        found = tables.emplace(key, SampleTable(spp, 7, lens, grouping, pattern)).first;
     }
     return found->second;
 }
@@ -122,6 +94,7 @@ struct Blur {
     const char* name;
     bool motion, defocus;
     Grouping grouping;
+    SamplePattern pattern = SamplePattern::kFree;
 };
 void PrintTo(const Blur& blur, std::ostream* out) {
     *out << blur.name;
@@ -134,7 +107,9 @@ class CoverTwins : public ::testing::TestWithParam<Blur> {
         soup.defocus = GetParam().defocus;
         return soup;
     }
-    const SampleTable& samples(int spp, double ratio = 1.0) const { return table(spp, GetParam().grouping, ratio); }
+    const SampleTable& samples(int spp, double ratio = 1.0) const {
+        return table(spp, GetParam().grouping, ratio, GetParam().pattern);
+    }
     static PixelRect whole(const Soup& soup) { return {0, soup.width, 0, soup.height}; }
 };
 
@@ -212,6 +187,25 @@ TEST_P(CoverTwins, AgreeForMaskedAndBlendedSurfaces) {
     }
 }
 
+TEST_P(CoverTwins, AgreeUnderARollingShutter) {
+    Random r(32);
+    for (const RollingShutter edge :
+         {RollingShutter::kTop, RollingShutter::kBottom, RollingShutter::kLeft, RollingShutter::kRight}) {
+        Soup s = soup();
+        s.width = r.between(30, 100);
+        s.height = r.between(30, 70);
+        s.triangles = 3;
+        Shutter shutter;
+        shutter.close = 1.0;
+        shutter.rolling = edge;
+        shutter.exposure_share = 0.3 * r.below(3);
+        if (r.below(2) == 0) shutter.curve = ShutterCurve(trapezoid_shutter(0.2, 0.4));
+        const SampleTable rolled(8, 7, Lens{}, GetParam().grouping, SamplePattern::kFree,
+                                 SampleTimes(shutter, s.width, s.height));
+        EXPECT_GT(expect_twins(make_soup(r, s), rolled, 8 << r.below(3), whole(s)), 0u);
+    }
+}
+
 TEST_P(CoverTwins, AgreeInsideACrop) {
     Random r(28);
     for (int i = 0; i < 4 * effort(); ++i) {
@@ -262,12 +256,14 @@ TEST(CoverTwinsOfOneFrame, AgreeForTablesThatAreGroupedForAnotherBlur) {
         for (const int spp : {4, 13}) expect_twins(frame, table(spp, grouping, 1.0), 32, {0, s.width, 0, s.height});
 }
 
-INSTANTIATE_TEST_SUITE_P(Property, CoverTwins,
-                         ::testing::Values(Blur{"Still", false, false, Grouping::kStill},
-                                           Blur{"Motion", true, false, Grouping::kMotion},
-                                           Blur{"Defocus", false, true, Grouping::kDefocus},
-                                           Blur{"Both", true, true, Grouping::kBoth}),
-                         [](const auto& info) { return info.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Property, CoverTwins,
+    ::testing::Values(Blur{"Still", false, false, Grouping::kStill}, Blur{"Motion", true, false, Grouping::kMotion},
+                      Blur{"Defocus", false, true, Grouping::kDefocus}, Blur{"Both", true, true, Grouping::kBoth},
+                      Blur{"Accumulation", true, true, Grouping::kBoth, SamplePattern::kAccumulation},
+                      Blur{"AccumulationOfMotion", true, false, Grouping::kMotion, SamplePattern::kAccumulation},
+                      Blur{"Interleaved", true, true, Grouping::kBoth, SamplePattern::kInterleaved}),
+    [](const auto& info) { return info.param.name; });
 
 }  // namespace
 }  // namespace pentaprism

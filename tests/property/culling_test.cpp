@@ -1,11 +1,16 @@
 // No culling test rejects a sample that the exact test accepts (docs/develop/algorithms.md 4.0, 4.13). Every test of
-// the table is proved here by being in the table; broken tests show that the method would notice.
+// the table is proved here by being in the table; those that are as a paper prints it must be caught losing samples.
+// tests/property/culling_mutations_test.cpp shows that the method notices small mistakes.
+#include <algorithm>
 #include <gtest/gtest.h>
+#include <mutex>
+#include <set>
 #include <string>
+#include <tbb/parallel_for.h>
 #include <vector>
 
-#include "cull/cull_test.h"
-#include "support/hard_triangles.h"
+#include "bound/facing.h"
+#include "support/ask_cull.h"
 
 namespace pentaprism {
 
@@ -16,106 +21,158 @@ void PrintTo(const CullTest* test, std::ostream* out) {
 
 namespace {
 
+using support::Asked;
 using support::effort;
 using support::for_each_accepted;
 using support::Hard;
 using support::HardCase;
 using support::kHardClasses;
+using support::kRegions;
 using support::LensShape;
 using support::name_of;
 using support::Random;
+using support::Region;
 
-struct Question {
-    const char* what;
-    Footprint footprint;
-};
-
-// Regions of the screen, the lens and the shutter that hold the sample, from a pixel to a whole cell.
-class Questions {
-  public:
-    Questions(Random& r, const HardCase& hard_case, const LocalSample& s) : s_(s), ratio_(hard_case.ratio()) {
-        const Domain whole{-1, 1, -ratio_, ratio_, 0, 1};
-        questions_[0] = {"pixel", square(1, whole)};
-        questions_[1] = {"block", square(kBlockSize, restricted(r))};
-        questions_[2] = {"tile", square(8 << r.below(3), r.chance(0.5) ? whole : restricted(r))};
-        questions_[3] = {"any rectangle", anywhere(r)};
-    }
-    const Question* begin() const { return questions_; }
-    const Question* end() const { return questions_ + 4; }
-
-  private:
-    Footprint square(int size, const Domain& domain) const {
-        const float f = static_cast<float>(size);
-        const float x = std::floor((s_.hx + 16) / f) * f - 16, y = std::floor((s_.hy + 16) / f) * f - 16;
-        return {x, x + f, y, y + f, domain};
-    }
-    static float lower(Random& r, float limit, float value) {
-        return r.chance(0.2) ? value : limit + static_cast<float>(r.unit()) * (value - limit);
-    }
-    Domain restricted(Random& r) const {
-        Domain d{lower(r, -1, s_.u),     lower(r, 1, s_.u), lower(r, -ratio_, s_.v),
-                 lower(r, ratio_, s_.v), lower(r, 0, s_.t), lower(r, 1, s_.t)};
-        return {std::min(d.u0, s_.u), std::max(d.u1, s_.u), std::min(d.v0, s_.v),
-                std::max(d.v1, s_.v), std::min(d.t0, s_.t), std::max(d.t1, s_.t)};
-    }
-    Footprint anywhere(Random& r) const {
-        Footprint f{lower(r, -16, s_.hx), lower(r, 16, s_.hx), lower(r, -16, s_.hy), lower(r, 16, s_.hy),
-                    restricted(r)};
-        return {std::min(f.x0, s_.hx), std::max(f.x1, s_.hx), std::min(f.y0, s_.hy), std::max(f.y1, s_.hy), f.domain};
-    }
-
-    LocalSample s_;
-    float ratio_;
-    Question questions_[4];
-};
-
+// What one test did with the samples it was asked about.
 struct Tally {
-    int accepted = 0, lost = 0;
+    std::int64_t asked = 0, lost = 0, asked_at_pixels = 0, lost_at_pixels = 0;
     std::string first;  // what the first wrong rejection was about
+    void add(const Tally& other) {
+        asked += other.asked;
+        lost += other.lost;
+        asked_at_pixels += other.asked_at_pixels;
+        lost_at_pixels += other.lost_at_pixels;
+        if (first.empty()) first = other.first;
+    }
 };
 
-Tally ask(const CullTest& test, Hard hard, std::uint64_t seed, int wanted) {
-    Tally tally;
+std::string told(Hard hard, const HardCase& c, Region region, const LocalSample& s, bool at_border) {
+    return name_of(hard) + ", over a " + name_of(region) + (at_border ? ", at the border" : "") + ", segment " +
+           std::to_string(c.segment) + ", h = (" + std::to_string(s.hx) + ", " + std::to_string(s.hy) + "), uvt = (" +
+           std::to_string(s.u) + ", " + std::to_string(s.v) + ", " + std::to_string(s.t) + ")";
+}
+
+// Asks tests about accepted samples of one class, in turn: half of the tests about each sample, each over one of the
+// regions.
+std::vector<Tally> ask_all(std::span<const CullTest* const> tests, Hard hard, std::uint64_t seed, int wanted,
+                           std::int64_t& accepted) {
+    std::vector<Asked> asked;
+    for (const CullTest* test : tests) asked.emplace_back(*test);
+    std::vector<Tally> tallies(tests.size());
     Random r(seed ^ 0x51ed270b);
     const LensShape shape = seed % 2 == 0 ? LensShape::kDisk : LensShape::kSquare;
-    CullState state;
-    tally.accepted = for_each_accepted(
-        hard, seed, wanted, shape, true, [&](const HardCase& c, const LocalSample& s, const SampleHit&) {
-            for (const Question& question : Questions(r, c, s)) {
-                const bool prepared = test.prepare(c.local, question.footprint, state);
-                if (prepared && test.keeps(state, s)) continue;
-                if (tally.lost++ == 0)
-                    tally.first = std::string(prepared ? "keeps() " : "prepare() ") + "rejects a sample over a " +
-                                  question.what + ", segment " + std::to_string(c.segment) + ", h = (" +
-                                  std::to_string(s.hx) + ", " + std::to_string(s.hy) + "), uvt = (" +
-                                  std::to_string(s.u) + ", " + std::to_string(s.v) + ", " + std::to_string(s.t) + ")";
+    std::size_t turn = 0;
+    accepted +=
+        for_each_accepted(hard, seed, wanted, shape, true, [&](const HardCase& c, LocalSample s, SampleHit hit) {
+            const bool at_border = r.chance(0.15);
+            if (at_border) support::push_to_border(r, c, s, hit);
+            ++turn;
+            Footprint footprints[4];
+            for (int k = 0; k < 4; ++k) footprints[k] = region_around(r, kRegions[k], c.ratio(), s);
+            for (std::size_t i = 0; i < tests.size(); ++i) {
+                // 256 boxes for each triangle would take most of the time.
+                if (std::string_view(tests[i]->name) == "interval-fine" && c.serial % 8 != 0) continue;
+                if ((turn + i) % 2 == 0) continue;  // the next sample
+                const std::size_t k = (turn / 2 + i) % 4;
+                const bool kept = asked[i].keeps(c, footprints[k], s);
+                Tally& tally = tallies[i];
+                ++tally.asked;
+                tally.asked_at_pixels += kRegions[k] == Region::kPixel;
+                if (kept) continue;
+                tally.lost_at_pixels += kRegions[k] == Region::kPixel;
+                if (tally.lost++ == 0) tally.first = told(hard, c, kRegions[k], s, at_border);
             }
         });
-    return tally;
+    return tallies;
+}
+
+TEST(Culling, KeepsEverySampleThatTheExactTestAccepts) {
+    constexpr int kChunks = 8;  // of each class, for all processors
+    const int wanted = 115'000 * effort();
+    const auto tests = cull_table();
+    std::vector<Tally> total(tests.size());
+    std::int64_t accepted = 0;
+    std::mutex mutex;
+    tbb::parallel_for(std::size_t{0}, kHardClasses.size() * kChunks, [&](std::size_t job) {
+        std::int64_t here = 0;
+        const std::vector<Tally> tallies = ask_all(tests, kHardClasses[job / kChunks], 2 + job % kChunks, wanted, here);
+        const std::lock_guard<std::mutex> lock(mutex);
+        for (std::size_t i = 0; i < tests.size(); ++i) total[i].add(tallies[i]);
+        accepted += here;
+    });
+    EXPECT_GE(accepted, std::int64_t{wanted} * kChunks * static_cast<std::int64_t>(kHardClasses.size()));
+    std::int64_t questions = 0;
+    for (std::size_t i = 0; i < tests.size(); ++i) {
+        const CullTest& test = *tests[i];
+        const Tally& tally = total[i];
+        questions += tally.asked;
+        if (test.conservative) {
+            EXPECT_GT(tally.asked, accepted / 20) << test.name;
+            EXPECT_EQ(tally.lost, 0) << test.name << " rejects " << tally.first;
+        } else {
+            EXPECT_GT(tally.lost_at_pixels * 100, tally.asked_at_pixels)
+                << test.name << " is said to lose samples; " << tally.lost_at_pixels << " of " << tally.asked_at_pixels
+                << " is not even a percent";
+            std::printf("%s loses %.1f %% over pixels\n", test.name,
+                        100.0 * static_cast<double>(tally.lost_at_pixels) / static_cast<double>(tally.asked_at_pixels));
+        }
+        RecordProperty(test.name, std::to_string(tally.lost) + " of " + std::to_string(tally.asked));
+    }
+    std::printf("%lld accepted samples, %lld questions\n", static_cast<long long>(accepted),
+                static_cast<long long>(questions));
 }
 
 class EveryCullTest : public ::testing::TestWithParam<const CullTest*> {};
-
-TEST_P(EveryCullTest, KeepsEverySampleThatTheExactTestAccepts) {
-    const int wanted = 50'000 * effort();
-    for (const Hard hard : kHardClasses)
-        for (const std::uint64_t seed : {2u, 3u}) {
-            const Tally tally = ask(*GetParam(), hard, seed, wanted);
-            EXPECT_GE(tally.accepted, wanted) << name_of(hard);
-            EXPECT_EQ(tally.lost, 0) << GetParam()->name << ", " << name_of(hard) << ": " << tally.first;
-        }
-}
 
 TEST_P(EveryCullTest, AnswersForAnEmptyDomainAndForNumbersThatAreNotFinite) {
     // No answer is wrong, but there must be one: an empty part of the shutter, and numbers that are not finite.
     Random r(5);
     HardCase c;
-    CullState state;
+    Asked asked(*GetParam());
     for (int i = 0; i < 2000; ++i) {
         make_hard_case(r, kHardClasses[i % kHardClasses.size()], c);
-        c.local.qx[r.below(3)] = r.chance(0.5) ? INFINITY : NAN;
-        const Footprint footprint{-4, -3, 7, 8, {-1, 1, -c.ratio(), c.ratio(), 0.9f, 0.1f}};
-        if (GetParam()->prepare(c.local, footprint, state)) GetParam()->keeps(state, {-3.5f, 7.5f, 0, 0, 0.5f});
+        float* const numbers[] = {c.local.qx, c.local.qy, c.local.qw, c.local.qc, c.local.dx, c.local.dw, c.local.dc};
+        numbers[r.below(7)][r.below(3)] = r.chance(0.5) ? INFINITY : NAN;
+        for (const float t1 : {0.1f, 1.0f}) {
+            const Footprint footprint{-4, -3, 7, 8, {-1, 1, -c.ratio(), c.ratio(), 0.9f, t1}};
+            asked.keeps(c, footprint, {-3.5f, 7.5f, 0, 0, 0.95f});
+        }
+    }
+}
+
+// These bounds are the same function of larger ranges. A plane or line that fits a large footprint well may lie, here
+// and there, below the one that fits a small footprint in it, and stage 2 of clip-space draws other lines: for those
+// the law is not even true.
+TEST_P(EveryCullTest, KeepsOverALargerFootprintWhatItKeepsOverASmallerOne) {
+    static const std::set<std::string_view> kOther = {"hyperplane", "ut-vt-lines", "clip-space",
+                                                      "clip-space-as-printed"};
+    if (kOther.contains(GetParam()->name)) GTEST_SKIP() << "not a law for this bound";
+    Random r(6);
+    HardCase c;
+    Asked small(*GetParam()), large(*GetParam());
+    int kept_by_both = 0, kept_by_neither = 0, kept_by_small = 0;
+    for (int i = 0; i < 60'000 * effort(); ++i) {
+        if (i % 12 == 0) make_hard_case(r, kHardClasses[i / 12 % kHardClasses.size()], c);
+        LocalSample s{static_cast<float>(r.range(-16, 16)), static_cast<float>(r.range(-16, 16)),
+                      static_cast<float>(r.range(-1, 1)), static_cast<float>(r.range(-1, 1)) * c.ratio(), 0};
+        const double t = (r.unit() + c.local.segment) / c.local.segments;
+        s.t = static_cast<float>(std::floor(t * 0x1p24) * 0x1p-24);
+        const Domain whole{-1, 1, -c.ratio(), c.ratio(), 0, 1};
+        const bool in_large = large.keeps(c, support::square_around(s, 8, whole), s);
+        const bool in_small =
+            small.keeps(c,
+                        support::square_around(
+                            s, 1, r.chance(0.5) ? whole : support::detail::part_of_lens_and_shutter(r, c.ratio(), s)),
+                        s);
+        kept_by_both += in_small && in_large;
+        kept_by_neither += !in_small && !in_large;
+        kept_by_small += in_small && !in_large;
+    }
+    EXPECT_EQ(kept_by_small, 0);
+    EXPECT_GT(kept_by_both, 0);
+    if (GetParam()->prepare != find_cull_test("none")->prepare && std::string_view(GetParam()->name) != "bbox" &&
+        std::string_view(GetParam()->name) != "facing") {
+        EXPECT_GT(kept_by_neither, 0) << "a test that keeps all proves nothing";
     }
 }
 
@@ -127,81 +184,25 @@ std::string test_name(const ::testing::TestParamInfo<const CullTest*>& info) {
 INSTANTIATE_TEST_SUITE_P(Culling, EveryCullTest, ::testing::ValuesIn(cull_table().begin(), cull_table().end()),
                          test_name);
 
-// ---- Broken tests, each of which the method must notice
-// ----------------------------------------------------------------
-
-const CullTest& sound() {
-    return *find_cull_test("improved-dual-space");
-}
-bool sound_keeps(const CullState& state, const LocalSample& sample) {
-    return sound().keeps(state, sample);
-}
-
-bool without_footprint_width(const LocalTriangle& T, const Footprint& f, CullState& state) {
-    const float x = 0.5f * (f.x0 + f.x1), y = 0.5f * (f.y0 + f.y1);
-    return sound().prepare(T, {x, x, y, y, f.domain}, state);
-}
-bool with_one_vertex_forgotten(const LocalTriangle& T, const Footprint& f, CullState& state) {
-    LocalTriangle wrong = T;
-    for (auto* p : {&wrong.qx, &wrong.qy, &wrong.qw, &wrong.qc, &wrong.dx, &wrong.dy, &wrong.dw, &wrong.dc})
-        (*p)[2] = (*p)[1];
-    return sound().prepare(wrong, f, state);
-}
-bool with_unsigned_coc(const LocalTriangle& T, const Footprint& f, CullState& state) {
-    LocalTriangle wrong = T;
-    for (int i = 0; i < 3; ++i) {
-        const float end = std::abs(T.qc[i] + T.dc[i]);
-        wrong.qc[i] = std::abs(T.qc[i]);
-        wrong.dc[i] = end - wrong.qc[i];
+TEST(Facing, OfAPartOfLensAndShutterIsTheSideThatItsSamplesSee) {
+    int wrong = 0, decided = 0, two_sided = 0;
+    for (const Hard hard : kHardClasses) {
+        Random r(8);
+        for_each_accepted(hard, 7, 10'000 * effort(), LensShape::kSquare, true,
+                          [&](const HardCase& c, const LocalSample& s, const SampleHit& hit) {
+                              const SegmentDomain whole = segment_domain(c.local, {-1, 1, -c.ratio(), c.ratio(), 0, 1});
+                              const SegmentDomain part =
+                                  segment_domain(c.local, support::detail::part_of_lens_and_shutter(r, c.ratio(), s));
+                              const Facing side = facing(c.local, part);
+                              decided += side != Facing::kMixed;
+                              two_sided += side != Facing::kMixed && facing(c.local, whole) == Facing::kMixed;
+                              wrong += side == (hit.front ? Facing::kBack : Facing::kFront);
+                          });
     }
-    return sound().prepare(wrong, f, state);
+    EXPECT_EQ(wrong, 0);
+    EXPECT_GT(decided, 10'000);
+    EXPECT_GT(two_sided, 1'000) << "a part of a turning triangle's domain is not decided more often than all of it";
 }
-bool at_the_middle_of_the_shutter(const LocalTriangle& T, const Footprint& f, CullState& state) {
-    LocalTriangle wrong = T;
-    for (int i = 0; i < 3; ++i) {
-        wrong.qx[i] += 0.5f * T.dx[i];
-        wrong.qy[i] += 0.5f * T.dy[i];
-        wrong.dx[i] = wrong.dy[i] = 0;
-    }
-    return sound().prepare(wrong, f, state);
-}
-bool with_the_first_segment_for_all(const LocalTriangle& T, const Footprint& f, CullState& state) {
-    LocalTriangle wrong = T;
-    wrong.segment = 0;
-    return sound().prepare(wrong, f, state);
-}
-bool with_one_lens_axis_for_both(const LocalTriangle& T, const Footprint& f, CullState& state) {
-    Footprint wrong = f;
-    wrong.domain.v0 = f.domain.u0;
-    wrong.domain.v1 = f.domain.u1;
-    return sound().prepare(T, wrong, state);
-}
-
-struct Broken {
-    const char* name;
-    CullTest test;
-};
-void PrintTo(const Broken& broken, std::ostream* out) {
-    *out << broken.name;
-}
-class ABrokenCullTest : public ::testing::TestWithParam<Broken> {};
-
-TEST_P(ABrokenCullTest, IsCaught) {
-    int lost = 0;
-    for (const Hard hard : kHardClasses)
-        for (const std::uint64_t seed : {2u, 3u}) lost += ask(GetParam().test, hard, seed, 1000).lost;
-    EXPECT_GT(lost, 0);
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Culling, ABrokenCullTest,
-    ::testing::Values(Broken{"NoFootprintWidth", {"", "", without_footprint_width, sound_keeps}},
-                      Broken{"VertexForgotten", {"", "", with_one_vertex_forgotten, sound_keeps}},
-                      Broken{"UnsignedCoc", {"", "", with_unsigned_coc, sound_keeps}},
-                      Broken{"MiddleOfShutter", {"", "", at_the_middle_of_the_shutter, sound_keeps}},
-                      Broken{"FirstSegmentForAll", {"", "", with_the_first_segment_for_all, sound_keeps}},
-                      Broken{"OneLensAxisForBoth", {"", "", with_one_lens_axis_for_both, sound_keeps}}),
-    [](const auto& info) { return info.param.name; });
 
 }  // namespace
 }  // namespace pentaprism

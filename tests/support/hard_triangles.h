@@ -45,6 +45,7 @@ struct HardCase {
     CellCentre centre{};
     MovingTriangle moving{};  ///< the frame's, of that segment
     LocalTriangle local{};
+    std::uint64_t serial = 0;  ///< another number for another triangle
     float ratio() const { return static_cast<float>(frame.view.lens.ratio); }
 };
 
@@ -177,6 +178,7 @@ inline void make_hard_case(Random& r, Hard hard, HardCase& out, bool two_sided =
         }
     out.moving = moving_triangle(frame, 0, out.segment);
     out.local = localize(frame, 0, out.segment, out.centre);
+    ++out.serial;
 }
 
 /// Which lens points a sample may have: those of a disk, or all of its square, as bounds assume.
@@ -236,6 +238,27 @@ inline bool aim(Random& r, const HardCase& hard_case, Hard hard, LensShape shape
     sample.hy = static_cast<float>(y);
     hit = cover_sample(T, sample, hard_case.centre);
     return hit.hit;
+}
+
+/// Moves an accepted sample along one coordinate to the last float that is still accepted on the way to a random place:
+/// there the exact test decides by its last bits. t moves in its steps of 2^-24. `hit` is that of the new place.
+inline void push_to_border(Random& r, const HardCase& hard_case, LocalSample& sample, SampleHit& hit) {
+    const int which = r.below(5);
+    float* const coordinate[] = {&sample.hx, &sample.hy, &sample.u, &sample.v, &sample.t};
+    const double low[] = {-16, -16, -1, -hard_case.ratio(), 0}, high[] = {16, 16, 1, hard_case.ratio(), 1 - 0x1p-24};
+    const auto rounded = [&](double value) {
+        return static_cast<float>(which == 4 ? std::floor(value * 0x1p24) * 0x1p-24 : value);
+    };
+    float inside = *coordinate[which], outside = rounded(r.range(low[which], high[which]));
+    for (int step = 0; step < 60; ++step) {
+        const float middle = rounded(0.5 * (static_cast<double>(inside) + outside));
+        if (middle == inside || middle == outside) break;
+        *coordinate[which] = middle;
+        const SampleHit there = cover_sample(hard_case.local, sample, hard_case.centre);
+        (there.hit ? inside : outside) = middle;
+        if (there.hit) hit = there;
+    }
+    *coordinate[which] = inside;
 }
 
 /// Calls visit(case, sample, hit) for at least `wanted` accepted samples of that class; returns how many there were.

@@ -190,7 +190,8 @@ TEST(SampleTable, PutsEveryVectorOfACellInOneStratumWhoseDomainHoldsItsSamples) 
     for (const Grouping grouping : kGroupings)
         for (const int spp : kCounts) {
             const SampleTable table(spp, 8, Lens{}, grouping);
-            const auto domains = table.domains();
+            std::vector<Domain> room;
+            const auto domains = table.domains(0, 0, room);
             ASSERT_LE(domains.size(), 64u);
             for (const auto& [cx, cy] : {std::pair(0, 0), std::pair(1, 5), std::pair(40, 3)}) {
                 std::vector<std::uint64_t> seen(table.slots(), 0);
@@ -212,6 +213,67 @@ TEST(SampleTable, PutsEveryVectorOfACellInOneStratumWhoseDomainHoldsItsSamples) 
                     ASSERT_EQ(blocks, ~std::uint64_t{0}) << "a vector is in no stratum";
             }
         }
+}
+
+Shutter rolling_shutter(RollingShutter edge) {
+    Shutter shutter;
+    shutter.close = 1.0;
+    shutter.rolling = edge;
+    shutter.exposure_share = 0.4;
+    shutter.curve = ShutterCurve(trapezoid_shutter(0.3, 0.5));
+    return shutter;
+}
+
+TEST(SampleTable, DelaysSamplesOfARollingShutterWithinTheDomainsOfTheirCell) {
+    constexpr int kWidth = 200, kHeight = 150;
+    for (const RollingShutter edge : {RollingShutter::kTop, RollingShutter::kRight})
+        for (const Grouping grouping : kGroupings)
+            for (const int spp : {1, 5, 16}) {
+                const SampleTimes times(rolling_shutter(edge), kWidth, kHeight);
+                const SampleTable table(spp, 8, Lens{}, grouping, SamplePattern::kFree, times);
+                std::vector<SampleVector> cell_room, block_room;
+                std::vector<Domain> domain_room;
+                for (const auto& [cx, cy] : {std::pair(0, 0), std::pair(6, 4), std::pair(2, 3)}) {
+                    const auto cell = table.cell(cx, cy, cell_room);
+                    const auto domains = table.domains(cx, cy, domain_room);
+                    for (const SampleTable::Stratum& s : table.strata(cx, cy))
+                        for (int b = 0; b < kBlocksPerCell; ++b) {
+                            if ((s.blocks >> b & 1) == 0) continue;
+                            const int bx = cx * kCellBlocks + b % kCellBlocks, by = cy * kCellBlocks + b / kCellBlocks;
+                            const SampleVector& v = cell[b * table.slots() + s.slot];
+                            const SampleVector& same = table.block(bx, by, block_room)[s.slot];
+                            const SampleVector& within = table.block(bx, by)[s.slot];
+                            const auto indices = table.indices(bx, by);
+                            for (int lane = 0; lane < kLanes; ++lane) {
+                                ASSERT_TRUE(v.t[lane] >= domains[s.stratum].t0 && v.t[lane] <= domains[s.stratum].t1);
+                                ASSERT_EQ(v.t[lane], same.t[lane]);
+                                const int px = bx * kBlockSize + lane % kBlockSize,
+                                          py = by * kBlockSize + lane / kBlockSize;
+                                const SamplePoint point =
+                                    table.sample(px, py, indices[static_cast<std::size_t>(s.slot) * kLanes + lane]);
+                                ASSERT_EQ(v.t[lane], point.t);
+                                ASSERT_EQ(point.t, times.at(within.t[lane], px + point.x, py + point.y));
+                            }
+                        }
+                }
+            }
+}
+
+TEST(SampleTable, SpreadsTimesAsTheShutterCurveHasItsLightOneInEachPart) {
+    Shutter shutter;
+    shutter.curve = ShutterCurve(trapezoid_shutter(0.5, 0.5));  // light until t: 2 t^2 up to a half
+    for (const int spp : {4, 16, 64}) {
+        const SampleTable table(spp, 5, Lens{}, Grouping::kMotion, SamplePattern::kFree, SampleTimes(shutter, 8, 8));
+        for (int pixel = 0; pixel < 16; ++pixel) {
+            std::set<int> parts;
+            for (int i = 0; i < spp; ++i) {
+                const double t = table.sample(pixel, 3 * pixel, i).t;
+                const double light = t < 0.5 ? 2 * t * t : 1 - 2 * (1 - t) * (1 - t);
+                parts.insert(static_cast<int>(light * spp));
+            }
+            EXPECT_EQ(parts.size(), static_cast<std::size_t>(spp));
+        }
+    }
 }
 
 // Corners of the polygon on the unit circle; inside of each side, up to rounding.

@@ -18,6 +18,12 @@ double limb_distance(const Limb& limb, glm::dvec3 p) {
     return glm::length(p - limb.a - t * axis) - glm::mix(limb.ra, limb.rb, t);
 }
 
+/// How fast limb_distance can change, per unit walked.
+double steepness(const Limb& limb) {
+    const double length = glm::length(limb.b - limb.a);
+    return length > 0.0 ? std::sqrt(1.0 + std::pow((limb.ra - limb.rb) / length, 2.0)) : 1.0;
+}
+
 double smooth_min(double a, double b, double k) {
     const double h = std::max(k - std::abs(a - b), 0.0) / k;
     return std::min(a, b) - 0.25 * h * h * k;
@@ -25,14 +31,31 @@ double smooth_min(double a, double b, double k) {
 
 }  // namespace
 
-double ImplicitBody::distance(glm::dvec3 p) const {
+ImplicitBody::Near ImplicitBody::all() const {
+    Near list;
+    for (const Limb& limb : limbs_) list.push_back(&limb);
+    return list;
+}
+
+// The limbs that can have a say anywhere within `reach` of `centre`: one that is farther than the nearest by more than
+// the width of the blend changes nothing, since smooth_min is min there. Three widths, because blends add up.
+ImplicitBody::Near ImplicitBody::near(glm::dvec3 centre, double reach) const {
+    double nearest = std::numeric_limits<double>::max();
+    for (const Limb& limb : limbs_) nearest = std::min(nearest, limb_distance(limb, centre) + steepness(limb) * reach);
+    Near list;
+    for (const Limb& limb : limbs_)
+        if (limb_distance(limb, centre) - steepness(limb) * reach <= nearest + 3.0 * blend_) list.push_back(&limb);
+    return list;
+}
+
+double ImplicitBody::distance(const Near& limbs, glm::dvec3 p) const {
     constexpr double kFar = 1e9;
     std::array<double, 8> groups;  // the trunk (group 0) and what grows out of it
     groups.fill(kFar);
-    for (const Limb& limb : limbs_) {
-        double& d = groups[static_cast<std::size_t>(limb.group)];
+    for (const Limb* limb : limbs) {
+        double& d = groups[static_cast<std::size_t>(limb->group)];
         // Along a chain a full blend would swell every joint.
-        d = smooth_min(d, limb_distance(limb, p), limb.group == 0 ? blend_ : 0.3 * blend_);
+        d = smooth_min(d, limb_distance(*limb, p), limb->group == 0 ? blend_ : 0.3 * blend_);
     }
     double nearest = groups[0];
     for (std::size_t i = 1; i < groups.size(); ++i)
@@ -40,18 +63,18 @@ double ImplicitBody::distance(glm::dvec3 p) const {
     return nearest;
 }
 
-glm::dvec3 ImplicitBody::normal(glm::dvec3 p) const {
+glm::dvec3 ImplicitBody::normal(const Near& limbs, glm::dvec3 p) const {
     const double h = 0.05 * blend_;
-    const auto along = [&](glm::dvec3 e) { return distance(p + e) - distance(p - e); };
+    const auto along = [&](glm::dvec3 e) { return distance(limbs, p + e) - distance(limbs, p - e); };
     return glm::normalize(glm::dvec3(along({h, 0, 0}), along({0, h, 0}), along({0, 0, h})) +
                           glm::dvec3(0.0, 1e-12, 0.0));
 }
 
-void ImplicitBody::dress(Primitive& mesh, glm::dvec3 p, bool skinned) const {
+void ImplicitBody::dress(Primitive& mesh, const Near& limbs, glm::dvec3 p, bool skinned) const {
     glm::dvec3 color{0.0};
     double sum = 0.0;
     std::map<int, double> bones;
-    const double nearest = distance(p);
+    const double nearest = distance(limbs, p);
     const auto closest = std::min_element(limbs_.begin(), limbs_.end(), [&](const Limb& a, const Limb& b) {
         return limb_distance(a, p) < limb_distance(b, p);
     });
@@ -65,7 +88,7 @@ void ImplicitBody::dress(Primitive& mesh, glm::dvec3 p, bool skinned) const {
         bones[limb.bone] = std::max(bones[limb.bone], weight);
     }
     mesh.positions.emplace_back(p);
-    mesh.normals.emplace_back(normal(p));
+    mesh.normals.emplace_back(normal(limbs, p));
     mesh.colors.emplace_back(glm::vec4(glm::vec3(color / sum), 1.0f));
     if (!skinned) return;
 
@@ -93,16 +116,31 @@ Primitive ImplicitBody::polygonize(double cell, Index material, bool skinned) co
     const auto at = [&](int x, int y, int z) { return std::size_t((z * n.y + y) * n.x + x); };
     const auto corner = [&](int x, int y, int z) { return low + cell * glm::dvec3(x, y, z); };
 
+    // Blocks of cells know the limbs near them, and those that the surface does not pass by need only a sign.
+    constexpr int kBlock = 8;
+    const glm::ivec3 blocks = (n + kBlock - 1) / kBlock;
+    const auto block_of = [&](int x, int y, int z) {
+        return std::size_t((z / kBlock * blocks.y + y / kBlock) * blocks.x + x / kBlock);
+    };
+    double steepest = 1.0;
+    for (const Limb& limb : limbs_) steepest = std::max(steepest, steepness(limb));
+    const double reach = (0.5 * std::sqrt(3.0) * kBlock + 4.0) * cell + 0.1 * blend_;
     std::vector<double> field(std::size_t(n.x) * std::size_t(n.y) * std::size_t(n.z));
-    for (int z = 0; z < n.z; ++z)
-        for (int y = 0; y < n.y; ++y) {
-            // A distance field changes by at most the step walked, so points far from the surface are skipped over.
-            for (int x = 0; x < n.x;) {
-                const double d = distance(corner(x, y, z));
-                const int skip = std::max(1, static_cast<int>((0.9 * std::abs(d) - 2.0 * cell) / cell));
-                for (int i = 0; i < skip && x < n.x; ++i, ++x) field[at(x, y, z)] = d;
+    std::vector<Near> limbs_of_block(std::size_t(blocks.x) * std::size_t(blocks.y) * std::size_t(blocks.z));
+    for (int bz = 0; bz < n.z; bz += kBlock)
+        for (int by = 0; by < n.y; by += kBlock)
+            for (int bx = 0; bx < n.x; bx += kBlock) {
+                const glm::dvec3 middle = corner(bx, by, bz) + glm::dvec3(0.5 * kBlock * cell);
+                Near& limbs = limbs_of_block[block_of(bx, by, bz)];
+                limbs = near(middle, reach);
+                const double there = distance(limbs, middle);
+                const bool passes = std::abs(there) <= steepest * reach;
+                if (!passes) limbs.clear();
+                for (int z = bz; z < std::min(bz + kBlock, n.z); ++z)
+                    for (int y = by; y < std::min(by + kBlock, n.y); ++y)
+                        for (int x = bx; x < std::min(bx + kBlock, n.x); ++x)
+                            field[at(x, y, z)] = passes ? distance(limbs, corner(x, y, z)) : there;
             }
-        }
 
     Primitive mesh;
     mesh.material = material;
@@ -126,9 +164,10 @@ Primitive ImplicitBody::polygonize(double cell, Index material, bool skinned) co
                     }
                 if (crossings == 0) continue;
                 glm::dvec3 p = sum / double(crossings);
-                for (int i = 0; i < 3; ++i) p -= 0.8 * distance(p) * normal(p);
+                const Near& limbs = limbs_of_block[block_of(x, y, z)];
+                for (int i = 0; i < 3; ++i) p -= 0.8 * distance(limbs, p) * normal(limbs, p);
                 vertex_of[at(x, y, z)] = static_cast<std::uint32_t>(mesh.positions.size());
-                dress(mesh, p, skinned);
+                dress(mesh, limbs, p, skinned);
             }
 
     for (int z = 1; z + 1 < n.z; ++z)

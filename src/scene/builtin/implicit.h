@@ -23,14 +23,20 @@ class ImplicitBody {
   public:
     ImplicitBody(std::vector<Limb> limbs, double blend) : limbs_(std::move(limbs)), blend_(blend) {}
 
-    double distance(glm::dvec3 p) const;  ///< negative inside
-    glm::dvec3 normal(glm::dvec3 p) const;
+    double distance(glm::dvec3 p) const { return distance(all(), p); }  ///< negative inside
+    glm::dvec3 normal(glm::dvec3 p) const { return normal(all(), p); }
 
     /// Vertex colours melt like the shape. With `skinned`, each vertex follows its four nearest bones.
     Primitive polygonize(double cell, Index material, bool skinned) const;
 
   private:
-    void dress(Primitive& mesh, glm::dvec3 p, bool skinned) const;
+    using Near = std::vector<const Limb*>;
+
+    Near all() const;
+    Near near(glm::dvec3 centre, double reach) const;
+    double distance(const Near& limbs, glm::dvec3 p) const;
+    glm::dvec3 normal(const Near& limbs, glm::dvec3 p) const;
+    void dress(Primitive& mesh, const Near& limbs, glm::dvec3 p, bool skinned) const;
 
     std::vector<Limb> limbs_;
     double blend_;

@@ -10,5 +10,8 @@ Scene hand();
 Scene car();
 Scene dragonfly();
 Scene cubes();
+Scene conan();
+Scene race();
+Scene bridge();
 
 }  // namespace pentaprism::builtin

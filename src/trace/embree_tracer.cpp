@@ -1,4 +1,4 @@
-#include "peer/embree_reference.h"
+#include "trace/embree_tracer.h"
 
 #include <cmath>
 #include <embree3/rtcore.h>
@@ -9,8 +9,8 @@
 
 #include "base/parallel.h"
 #include "bound/local_triangle.h"
+#include "cover/exact.h"
 #include "frame/opacity.h"
-#include "peer/brute_force.h"
 
 namespace pentaprism {
 namespace {
@@ -68,7 +68,7 @@ float axis_scale(const View& view) {
 
 }  // namespace
 
-class EmbreeReference::Impl {
+class EmbreeTracer::Impl {
   public:
     Impl(const Frame& frame, const SampleTable& table, const EmbreeOptions& options)
         : frame_(frame), table_(table), scale_(axis_scale(frame.view)), for_speed_(options.for_speed) {
@@ -217,7 +217,8 @@ class EmbreeReference::Impl {
         context.bx = bx;
         context.by = by;
 
-        const std::span<const SampleVector> vectors = table_.block(bx, by);
+        static thread_local std::vector<SampleVector> room;
+        const std::span<const SampleVector> vectors = table_.block(bx, by, room);
         const std::span<const std::uint16_t> indices = table_.indices(bx, by);
         const std::size_t block = kCellBlocks * static_cast<std::size_t>(by % kCellBlocks) + bx % kCellBlocks;
         for (std::size_t slot = 0; slot < vectors.size(); ++slot) {
@@ -270,7 +271,7 @@ class EmbreeReference::Impl {
                                RTCHitN_Ng_z(arguments.hit, n, i) * RTCRayN_dir_z(arguments.ray, n, i) >
                            0.0f;
         if (!front && !frame.parts[frame.part_of[triangle]].two_sided) return false;
-        return is_opaque(frame, triangle, context.self->placed(context, RTCRayN_id(arguments.ray, n, i)));
+        return context.self->is_opaque(context, triangle, static_cast<int>(RTCRayN_id(arguments.ray, n, i)));
     }
 
     static bool is_hit_quick(const Context& context, const RTCFilterFunctionNArguments& arguments, unsigned i,
@@ -283,15 +284,18 @@ class EmbreeReference::Impl {
                             context.self->table_.spp());
     }
 
-    PlacedSample placed(const Context& context, unsigned id) const {
-        const int lane = static_cast<int>(id);
+    /// The rule of the coverage stage, at its own barycentrics: a mask's edge is the same edge.
+    bool is_opaque(const Context& context, std::uint32_t triangle, int lane) const {
+        const Part& part = frame_.parts[frame_.part_of[triangle]];
+        if (part.alpha_mode == AlphaMode::kOpaque) return true;
         const SampleVector& v = *context.vector;
-        const int px = context.bx * kBlockSize + lane % kBlockSize, py = context.by * kBlockSize + lane / kBlockSize;
-        // From the cell's middle, y up, to the pixel's corner, y down: exact on the lattice of 1/256.
-        constexpr int half = kCellSize / 2;
-        const SamplePoint point{v.x[lane] + static_cast<float>(half - px % kCellSize),
-                                static_cast<float>(half - py % kCellSize) - v.y[lane], v.u[lane], v.v[lane], v.t[lane]};
-        return place_sample(frame_.view, point, px, py, context.indices[lane], table_.spp());
+        // In double the product is exact, as the exact test's own is.
+        const int segment = part.moves ? static_cast<int>(static_cast<double>(v.t[lane]) * part.segments) : 0;
+        const CellCentre centre = cell_centre(frame_.view, context.bx / kCellBlocks, context.by / kCellBlocks);
+        const SampleHit hit = project_sample(localize(frame_, triangle, segment, centre),
+                                             {v.x[lane], v.y[lane], v.u[lane], v.v[lane], v.t[lane]});
+        return is_opaque_at(frame_, triangle, hit.barycentrics, context.bx * kBlockSize + lane % kBlockSize,
+                            context.by * kBlockSize + lane / kBlockSize, context.indices[lane], table_.spp());
     }
 
     void release() {
@@ -308,10 +312,10 @@ class EmbreeReference::Impl {
     std::vector<Group> groups_;
 };
 
-EmbreeReference::EmbreeReference(const Frame& frame, const SampleTable& table, const EmbreeOptions& options)
+EmbreeTracer::EmbreeTracer(const Frame& frame, const SampleTable& table, const EmbreeOptions& options)
     : impl_(std::make_unique<Impl>(frame, table, options)) {}
-EmbreeReference::~EmbreeReference() = default;
-void EmbreeReference::trace(const Tile& tile, Hits& hits) const {
+EmbreeTracer::~EmbreeTracer() = default;
+void EmbreeTracer::trace(const Tile& tile, Hits& hits) const {
     impl_->trace(tile, hits);
 }
 

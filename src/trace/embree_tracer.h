@@ -1,5 +1,6 @@
 #pragma once
-// An independent answer to the same question: Embree's ray tracer on the same frame and the same samples.
+// Embree's ray tracer on the frame and its samples: what `--visibility raytrace` renders with, and the independent
+// answer that `verify` compares with.
 //
 // A sample's line of sight is straight in raster clip space (x, y, w), and motion there is linear between knots, which
 // is what Embree's motion blur interpolates: so Embree is given the frame's own points, and its ray parameter is the
@@ -9,13 +10,11 @@
 #include <memory>
 #include <string>
 
-#include "cover/hits.h"
-#include "frame/frame.h"
-#include "sample/sample_table.h"
+#include "trace/tracer.h"
 
 namespace pentaprism {
 
-/// How Embree is set up. The defaults are for verification.
+/// How Embree is set up. The defaults are those of make_tracer(), for pictures and for verification.
 struct EmbreeOptions {
     /// Embree's fastest: no robust mode, back faces of one-sided surfaces are hit, too (refusing them would cost Embree
     /// a callback for each hit), and masks are asked at Embree's own barycentrics.
@@ -24,18 +23,17 @@ struct EmbreeOptions {
     std::string device;       ///< configuration string, such as "tri_accel_mb=bvh8.triangle4vmb"
 };
 
-class EmbreeReference {
+class EmbreeTracer : public Tracer {
   public:
     /// Builds Embree's scene from the frame; the frame and the table must outlive this. Throws Error(kBackend) when
     /// Embree refuses, such as beyond 128 motion segments.
-    EmbreeReference(const Frame& frame, const SampleTable& table, const EmbreeOptions& options);
-    ~EmbreeReference();
-    EmbreeReference(const EmbreeReference&) = delete;
-    EmbreeReference& operator=(const EmbreeReference&) = delete;
+    EmbreeTracer(const Frame& frame, const SampleTable& table, const EmbreeOptions& options);
+    ~EmbreeTracer() override;
+    EmbreeTracer(const EmbreeTracer&) = delete;
+    EmbreeTracer& operator=(const EmbreeTracer&) = delete;
 
-    /// The nearest triangle of every sample of a tile, a packet of 16 rays for each vector of the sample table. `hits`
-    /// has been reset. Thread-safe.
-    void trace(const Tile& tile, Hits& hits) const;
+    /// A packet of 16 rays for each vector of the sample table.
+    void trace(const Tile& tile, Hits& hits) const override;
 
   private:
     class Impl;

@@ -1,0 +1,210 @@
+// Training data: `--dataset DIR`, one set of files for each frame, from one pass of the blurred frame and its sharp
+// twins.
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <pentaprism/aov.h>
+#include <pentaprism/error.h>
+#include <pentaprism/metadata.h>
+
+#include "cli/frame_output.h"
+#include "cli/tee.h"
+
+namespace pentaprism::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+// What a data set holds of a frame beside its colours.
+const std::vector<Aov> kAovs{Aov::kDepth, Aov::kMotion, Aov::kCoc, Aov::kObjectId, Aov::kMaterialId, Aov::kCoverage};
+
+const char* const kFolders[] = {"blur", "sharp", "sharp-open", "sharp-close", "depth", "flow", "coc", "ids", "frames"};
+
+std::string dump(const Json& json) {
+    return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+// Keeps the numbers of a frame as well.
+class Collector : public Tee {
+  public:
+    using Tee::Tee;
+    FrameInfo info;
+    std::vector<float> depth, aovs;
+
+    void begin(const FrameInfo& frame) override {
+        info = frame;
+        FrameInfo colour_alone = frame;
+        colour_alone.aovs.clear();
+        colour_alone.attributes.clear();
+        Tee::begin(colour_alone);
+        pixels_ = static_cast<std::size_t>(info.x1 - info.x0) * static_cast<std::size_t>(info.y1 - info.y0);
+        depth.reserve(pixels_);
+    }
+    void rows(const PixelRows& band) override {
+        Tee::rows(band);
+        const std::size_t first = depth.size(), n = band.z.size(), channels = band.aovs.size() / n;
+        depth.insert(depth.end(), band.z.begin(), band.z.end());
+        aovs.resize(channels * pixels_);
+        for (std::size_t c = 0; c < channels; ++c)
+            std::copy_n(band.aovs.begin() + c * n, n, aovs.begin() + c * pixels_ + first);
+    }
+    /// The channels of an output variable.
+    std::vector<DataPlane> planes(Aov wanted) const {
+        std::vector<DataPlane> result;
+        std::size_t channel = 0;
+        for (const Aov aov : info.aovs)
+            for (const ChannelInfo& about : aov_info(aov).channels) {
+                if (aov == wanted)
+                    result.push_back(
+                        {about.name, about.whole_number, std::span(aovs).subspan(channel * pixels_, pixels_)});
+                ++channel;
+            }
+        return result;
+    }
+
+  private:
+    std::size_t pixels_ = 0;
+};
+
+// Part `pass` of `passes` of a frame.
+Progress part_of(const Progress& progress, int pass, int passes) {
+    return [&progress, pass, passes](double done) { return !progress || progress((pass + done) / passes); };
+}
+
+Json camera_json(const FrameInfo& info) {
+    Json json;
+    json["frame"] = info.frame;
+    json["camera"] = info.camera;
+    json["width"] = info.x1 - info.x0;
+    json["height"] = info.y1 - info.y0;
+    // Pixels from the upper left corner of the delivered part, y down.
+    json["intrinsics"] = {
+        {"fx", info.fx}, {"fy", info.fy}, {"cx", 0.5 * info.width - info.x0}, {"cy", 0.5 * info.height - info.y0}};
+    json["focal_length_mm"] = info.focal_length_mm;
+    json["lens_radius_m"] = info.lens_radius;
+    json["fstop"] = info.fstop;
+    json["focus_distance_m"] = info.focus_distance;
+    json["shutter_open_s"] = info.shutter_open;
+    json["shutter_close_s"] = info.shutter_close;
+    json["exposure_s"] = info.shutter_close - info.shutter_open - info.readout;  // of one row
+    json["readout_s"] = info.readout;
+    Json knots = Json::array();
+    for (const FrameInfo::Knot& knot : info.knots)
+        knots.push_back({{"time_s", knot.time}, {"world_to_camera_column_major", knot.world_to_camera}});
+    json["knots"] = knots;
+    return json;
+}
+
+class Dataset : public FrameOutput {
+  public:
+    Dataset(const FrameSource& source, const fs::path& folder) : source_(source), folder_(folder) {
+        source_.settings.image.aovs = kAovs;
+        for (const char* kind : kFolders) {
+            std::error_code error;
+            fs::create_directories(folder_ / kind, error);
+            if (error)
+                throw Error(ErrorKind::kOutput, fmt::format("--dataset {}: cannot make the folder ({})",
+                                                            (folder_ / kind).string(), error.message()));
+        }
+    }
+
+    std::string name(std::int64_t frame) const override { return file("blur", frame, ".exr").string(); }
+    bool exists(std::int64_t frame) const override { return fs::exists(file("frames", frame, ".json")); }
+    RenderStats render(Renderer& renderer, std::int64_t frame, const Progress& progress) override;
+    void finish() override;
+
+  private:
+    fs::path file(const char* kind, std::int64_t frame, const char* suffix) const {
+        return folder_ / kind / fmt::format("{:04}{}", frame, suffix);
+    }
+    void write_numbers(std::int64_t frame, const Collector& collector) const;
+
+    FrameSource source_;
+    fs::path folder_;
+};
+
+RenderStats Dataset::render(Renderer& renderer, std::int64_t frame, const Progress& progress) {
+    constexpr int kPasses = 4;
+    const RenderSettings& settings = source_.settings;
+    Collector collector({file("blur", frame, ".exr"), file("blur", frame, ".png")}, settings.image,
+                        source_.metadata(settings));
+    RenderStats stats;
+    renderer.render(settings, static_cast<double>(frame), collector, stats, part_of(progress, 0, kPasses));
+    collector.finish();
+    write_numbers(frame, collector);
+
+    const std::pair<const char*, SharpMoment> twins[] = {
+        {"sharp", SharpMoment::kMiddle}, {"sharp-open", SharpMoment::kOpen}, {"sharp-close", SharpMoment::kClose}};
+    int pass = 1;
+    for (const auto& [kind, moment] : twins)
+        render_sharp(renderer, source_, collector.info, moment, {file(kind, frame, ".exr"), file(kind, frame, ".png")},
+                     part_of(progress, pass++, kPasses));
+
+    Json json = camera_json(collector.info);
+    for (const auto& [name, value] : collector.info.attributes)
+        if (name == "objects" || name == "materials") json[name] = Json::parse(value);
+    write_text_file(file("frames", frame, ".json"), dump(json));
+    return stats;
+}
+
+void Dataset::write_numbers(std::int64_t frame, const Collector& collector) const {
+    const FrameInfo& info = collector.info;
+    const FileMetadata about = source_.metadata(source_.settings);
+    const int width = info.x1 - info.x0, height = info.y1 - info.y0;
+    std::vector<DataPlane> depth{{"Z", false, collector.depth}};
+    write_npy(file("depth", frame, ".npy"), width, height, depth);
+    write_depth_png(file("depth", frame, ".png"), width, height, collector.depth);
+    for (const Aov aov : {Aov::kDepth, Aov::kCoverage})
+        for (const DataPlane& plane : collector.planes(aov)) depth.push_back(plane);
+    write_data_exr(file("depth", frame, ".exr"), width, height, depth, about);
+    const std::vector<DataPlane> flow = collector.planes(Aov::kMotion), coc = collector.planes(Aov::kCoc);
+    write_data_exr(file("flow", frame, ".exr"), width, height, flow, about);
+    write_flo(file("flow", frame, ".flo"), width, height, flow[0], flow[1]);
+    write_data_exr(file("coc", frame, ".exr"), width, height, coc, about);
+    write_npy(file("coc", frame, ".npy"), width, height, coc);
+    std::vector<DataPlane> ids = collector.planes(Aov::kObjectId);
+    ids.push_back(collector.planes(Aov::kMaterialId)[0]);
+    write_data_exr(file("ids", frame, ".exr"), width, height, ids, about);
+}
+
+// manifest.json and camera.json, over all frames that the folder holds whole.
+void Dataset::finish() {
+    std::vector<fs::path> frames;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "frames"))
+        if (entry.path().extension() == ".json") frames.push_back(entry.path());
+    std::sort(frames.begin(), frames.end());
+    Json cameras = Json::array(), files = Json::object();
+    for (const fs::path& frame : frames) {
+        std::ifstream in(frame);
+        cameras.push_back(Json::parse(in));
+        for (const char* kind : kFolders)
+            for (const char* suffix : {".exr", ".png", ".npy", ".flo", ".json"}) {
+                const fs::path name = fs::path(kind) / (frame.stem().string() + suffix);
+                if (fs::exists(folder_ / name)) files[name.generic_string()] = scene_hash((folder_ / name).string());
+            }
+    }
+    Json manifest;
+    manifest["software"] = source_.software;
+    manifest["settings"] = Json::parse(settings_json(source_.settings, source_.scene, source_.scene_hash));
+    manifest["frames"] = frames.size();
+    manifest["depth_png"] = "millimetres, 65535 for that and more, 0 where nothing is hit";
+    manifest["flow"] =
+        "pixels from this frame's mid-shutter to the next one's (.flo), u right, v down; the .exr has both directions";
+    manifest["coc"] = "signed radius in pixels, negative in front of the focus plane";
+    manifest["hash"] = "XXH3, 128 bits";
+    manifest["files"] = files;
+    write_text_file(folder_ / "camera.json", dump({{"frames", cameras}}));
+    write_text_file(folder_ / "manifest.json", dump(manifest));
+}
+
+}  // namespace
+
+std::unique_ptr<FrameOutput> make_dataset_output(const FrameSource& source, const fs::path& folder) {
+    return std::make_unique<Dataset>(source, folder);
+}
+
+}  // namespace pentaprism::cli

@@ -1,0 +1,87 @@
+// Frames as pictures: `-o OUT`, with the sharp twin of each if asked for.
+
+#include <pentaprism/frames.h>
+#include <pentaprism/metadata.h>
+
+#include "cli/frame_output.h"
+#include "cli/tee.h"
+
+namespace pentaprism::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Remembers what the frame was, for its twin.
+class RememberingTee : public Tee {
+  public:
+    using Tee::Tee;
+    FrameInfo info;
+    void begin(const FrameInfo& frame) override {
+        info = frame;
+        Tee::begin(frame);
+    }
+};
+
+class PictureOutput : public FrameOutput {
+  public:
+    PictureOutput(const FrameSource& source, const fs::path& out, bool sharp)
+        : source_(source), out_(out), sharp_(sharp) {}
+
+    std::string name(std::int64_t frame) const override { return frame_file(out_, frame).string(); }
+    bool exists(std::int64_t frame) const override {
+        const fs::path file = frame_file(out_, frame);
+        return fs::exists(file) && (!sharp_ || fs::exists(twin_of(file)));
+    }
+    RenderStats render(Renderer& renderer, std::int64_t frame, const Progress& progress) override {
+        const fs::path file = frame_file(out_, frame);
+        RememberingTee tee({file}, source_.settings.image, source_.metadata(source_.settings));
+        RenderStats stats;
+        renderer.render(source_.settings, static_cast<double>(frame), tee, stats, progress);
+        tee.finish();
+        stats.times_ms["write"] = tee.milliseconds();
+        if (sharp_) render_sharp(renderer, source_, tee.info, SharpMoment::kMiddle, {twin_of(file)}, progress);
+        return stats;
+    }
+
+  private:
+    static fs::path twin_of(const fs::path& file) {
+        fs::path twin = file;
+        return twin.replace_extension(".sharp" + file.extension().string());
+    }
+    FrameSource source_;
+    fs::path out_;
+    bool sharp_;
+};
+
+}  // namespace
+
+FileMetadata FrameSource::metadata(const RenderSettings& of) const {
+    FileMetadata metadata;
+    metadata.software = software;
+    metadata.settings_json = settings_json(of, scene, scene_hash);
+    return metadata;
+}
+
+void render_sharp(Renderer& renderer, const FrameSource& source, const FrameInfo& info, SharpMoment moment,
+                  const std::vector<fs::path>& files, const Progress& progress) {
+    RenderSettings settings = source.settings;
+    settings.image.aovs.clear();
+    settings.camera.defocus = false;
+    settings.shutter.shutter = 0.0;  // open for no time, at the moment that is asked for, everywhere
+    settings.shutter.rolling = RollingShutter::kNone;
+    settings.shutter.rolling_duration.reset();
+    settings.shutter.curve.clear();
+    const double time = moment == SharpMoment::kOpen    ? info.shutter_open
+                        : moment == SharpMoment::kClose ? info.shutter_close
+                                                        : 0.5 * (info.shutter_open + info.shutter_close);
+    Tee tee(files, settings.image, source.metadata(settings));
+    RenderStats stats;
+    renderer.render(settings, time * settings.animation.fps, tee, stats, progress);
+    tee.finish();
+}
+
+std::unique_ptr<FrameOutput> make_picture_output(const FrameSource& source, const fs::path& out, bool sharp) {
+    return std::make_unique<PictureOutput>(source, out, sharp);
+}
+
+}  // namespace pentaprism::cli

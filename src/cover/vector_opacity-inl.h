@@ -1,0 +1,161 @@
+// Alpha masks and stochastic transparency of a vector of hits: the arithmetic of is_opaque_at() (frame/opacity.h), lane
+// by lane the same roundings in the same order. Texels alone are fetched one lane at a time: a gather costs more.
+
+#if defined(PENTAPRISM_COVER_VECTOR_OPACITY_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef PENTAPRISM_COVER_VECTOR_OPACITY_INL_H
+#undef PENTAPRISM_COVER_VECTOR_OPACITY_INL_H
+#else
+#define PENTAPRISM_COVER_VECTOR_OPACITY_INL_H
+#endif
+
+#include <bit>
+
+#include "cover/lanes-inl.h"
+#include "frame/opacity.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pentaprism {
+namespace HWY_NAMESPACE {
+
+using IntVec = hn::Vec<I>;
+
+HWY_INLINE Vec mixed(F f, const Vec b[3], float p, float q, float r) {
+    return hn::Add(hn::Add(hn::Mul(b[0], hn::Set(f, p)), hn::Mul(b[1], hn::Set(f, q))), hn::Mul(b[2], hn::Set(f, r)));
+}
+
+// A texture coordinate in one period, times the size: what Pyramid::alpha() makes of it. At most 2 * size.
+HWY_INLINE Vec to_texels(F f, Wrap wrap, Vec x, int size) {
+    const Vec zero = hn::Zero(f), n = hn::Set(f, static_cast<float>(size));
+    if (wrap == Wrap::kClampToEdge) {
+        const Vec clamped = hn::IfThenElse(hn::Gt(x, zero), hn::Min(x, hn::Set(f, 1.0f)), zero);
+        return hn::Mul(clamped, n);
+    }
+    const Mask usable = hn::Lt(hn::Abs(x), hn::Set(f, 0x1p23f));
+    const Vec period =
+        wrap == Wrap::kRepeat ? hn::Floor(x) : hn::Mul(hn::Set(f, 2.0f), hn::Floor(hn::Mul(hn::Set(f, 0.5f), x)));
+    return hn::Mul(hn::IfThenElseZero(usable, hn::Sub(x, period)), n);
+}
+
+// Texel that a position at most one period off stands for.
+HWY_INLINE IntVec wrapped(I i, Wrap wrap, IntVec texel, int size) {
+    const IntVec zero = hn::Zero(i), last = hn::Set(i, size - 1);
+    if (wrap == Wrap::kClampToEdge) return hn::Min(hn::Max(texel, zero), last);
+    const IntVec period = hn::Set(i, wrap == Wrap::kRepeat ? size : 2 * size);
+    texel = hn::IfThenElse(hn::Lt(texel, zero), hn::Add(texel, period), texel);
+    texel = hn::IfThenElse(hn::Lt(texel, period), texel, hn::Sub(texel, period));
+    if (wrap == Wrap::kRepeat) return texel;
+    return hn::IfThenElse(hn::Gt(texel, last), hn::Sub(hn::Set(i, 2 * size - 1), texel), texel);
+}
+
+HWY_INLINE Vec texture_alpha(F f, const OpacityTerms& terms, Vec s, Vec t, std::uint64_t lanes) {
+    const I i;
+    const TextureRef& ref = *terms.ref;
+    const int width = terms.texture->width(), height = terms.texture->height();
+    const std::uint8_t* codes = terms.texture->opacity_codes();
+    Vec x = to_texels(f, ref.wrap_s, s, width), y = to_texels(f, ref.wrap_t, t, height);
+    if (!ref.nearest) {
+        x = hn::Sub(x, hn::Set(f, 0.5f));
+        y = hn::Sub(y, hn::Set(f, 0.5f));
+    }
+    const Vec x_floor = hn::Floor(x), y_floor = hn::Floor(y);
+    const IntVec one = hn::Set(i, 1), row = hn::Set(i, width);
+    const IntVec column0 = hn::ConvertTo(i, x_floor), row0 = hn::ConvertTo(i, y_floor);
+    const IntVec left = wrapped(i, ref.wrap_s, column0, width);
+    const IntVec upper = hn::Mul(wrapped(i, ref.wrap_t, row0, height), row);
+    HWY_ALIGN std::int32_t at[4][kLanes];
+    HWY_ALIGN float code[4][kLanes] = {};
+    hn::Store(hn::Add(upper, left), i, at[0]);
+    if (ref.nearest) {
+        for (std::uint64_t m = lanes; m != 0; m &= m - 1) {
+            const int k = std::countr_zero(m);
+            code[0][k] = codes[static_cast<std::uint32_t>(at[0][k])];
+        }
+        return hn::Mul(hn::Load(f, code[0]), hn::Set(f, 1.0f / 255.0f));
+    }
+    const IntVec right = wrapped(i, ref.wrap_s, hn::Add(column0, one), width);
+    const IntVec lower = hn::Mul(wrapped(i, ref.wrap_t, hn::Add(row0, one), height), row);
+    hn::Store(hn::Add(upper, right), i, at[1]);
+    hn::Store(hn::Add(lower, left), i, at[2]);
+    hn::Store(hn::Add(lower, right), i, at[3]);
+    for (std::uint64_t m = lanes; m != 0; m &= m - 1) {
+        const int k = std::countr_zero(m);
+        for (int tap = 0; tap < 4; ++tap) code[tap][k] = codes[static_cast<std::uint32_t>(at[tap][k])];
+    }
+    const Vec share_x = hn::Sub(x, x_floor), share_y = hn::Sub(y, y_floor);
+    const auto between = [&](Vec p, Vec q, Vec share) HWY_ATTR { return hn::Add(p, hn::Mul(hn::Sub(q, p), share)); };
+    const Vec above = between(hn::Load(f, code[0]), hn::Load(f, code[1]), share_x);
+    const Vec below = between(hn::Load(f, code[2]), hn::Load(f, code[3]), share_x);
+    return hn::Mul(between(above, below, share_y), hn::Set(f, 1.0f / 255.0f));
+}
+
+// Of the lanes in `ask`, those of a blended surface that are there.
+HWY_NOINLINE Mask exceeds_threshold(F f, const TileState& state, std::uint32_t triangle, Vec alpha, int lane, Job job,
+                                    Mask ask) {
+    HWY_ALIGN float threshold[kLanes] = {};
+    const Mask open = hn::And(ask, hn::And(hn::Gt(alpha, hn::Zero(f)), hn::Lt(alpha, hn::Set(f, 1.0f))));
+    const int block = static_cast<int>(job) % kBlocksPerCell, slot = static_cast<int>(job) / kBlocksPerCell;
+    const int bx = state.work.tile.cell_x() * kCellBlocks + block % kCellBlocks,
+              by = state.work.tile.cell_y() * kCellBlocks + block / kCellBlocks;
+    const std::uint16_t* indices = &state.work.samples.indices(bx, by)[static_cast<std::size_t>(slot) * kLanes + lane];
+    for (std::uint64_t m = bits_of(f, open); m != 0; m &= m - 1) {
+        const int k = std::countr_zero(m);
+        const int px = bx * kBlockSize + (lane + k) % kBlockSize, py = by * kBlockSize + (lane + k) / kBlockSize;
+        threshold[k] = opacity_threshold(triangle, px, py, indices[k], state.work.samples.spp());
+    }
+    return hn::And(ask, hn::Gt(alpha, hn::Load(f, threshold)));  // thresholds are in [0, 1): 0 and 1 need no asking
+}
+
+// Glass is rare: lane by lane.
+HWY_NOINLINE Mask decide_glass(F f, const TileState& state, std::uint32_t triangle, const Vec b[3], int lane, Job job,
+                               Mask hit) {
+    HWY_ALIGN float barycentrics[3][kLanes];
+    HWY_ALIGN float there[kLanes] = {};
+    for (int i = 0; i < 3; ++i) hn::Store(b[i], f, barycentrics[i]);
+    const int block = static_cast<int>(job) % kBlocksPerCell, slot = static_cast<int>(job) / kBlocksPerCell;
+    const int bx = state.work.tile.cell_x() * kCellBlocks + block % kCellBlocks,
+              by = state.work.tile.cell_y() * kCellBlocks + block / kCellBlocks;
+    const std::uint16_t* indices = &state.work.samples.indices(bx, by)[static_cast<std::size_t>(slot) * kLanes + lane];
+    for (std::uint64_t m = bits_of(f, hit); m != 0; m &= m - 1) {
+        const int k = std::countr_zero(m);
+        const int px = bx * kBlockSize + (lane + k) % kBlockSize, py = by * kBlockSize + (lane + k) / kBlockSize;
+        const float at[3] = {barycentrics[0][k], barycentrics[1][k], barycentrics[2][k]};
+        there[k] = is_opaque_at(state.work.frame, triangle, at, px, py, indices[k], state.work.samples.spp()) ? 1 : 0;
+    }
+    return hn::And(hit, hn::Gt(hn::Load(f, there), hn::Zero(f)));
+}
+
+// The lanes of `hit` whose surface is really there. `edges`, `sum`: barycentric coordinates times their sum.
+HWY_NOINLINE Mask decide_opacity(F f, const TileState& state, const LocalTriangle& T, const OpacityTerms& terms,
+                                 const Vec edges[3], Vec sum, int lane, Job job, Mask hit) {
+    const Vec b[3] = {hn::Div(edges[0], sum), hn::Div(edges[1], sum), hn::Div(edges[2], sum)};
+    if (terms.glass) return decide_glass(f, state, T.triangle, b, lane, job, hit);
+    Vec alpha = hn::Set(f, terms.factor);
+    if (terms.colored) alpha = hn::Mul(alpha, mixed(f, b, terms.color[0], terms.color[1], terms.color[2]));
+    if (terms.texture == nullptr) {
+        alpha = hn::Mul(alpha, hn::Set(f, terms.texture_alpha));
+    } else {
+        Vec s = mixed(f, b, terms.uv[0].x, terms.uv[1].x, terms.uv[2].x);
+        Vec t = mixed(f, b, terms.uv[0].y, terms.uv[1].y, terms.uv[2].y);
+        const TextureRef& ref = *terms.ref;
+        const Vec offset_s = hn::Set(f, ref.offset.x), offset_t = hn::Set(f, ref.offset.y);
+        if (ref.rotation == 0.0f) {
+            s = hn::Add(hn::Mul(hn::Set(f, ref.scale.x), s), offset_s);
+            t = hn::Add(hn::Mul(hn::Set(f, ref.scale.y), t), offset_t);
+        } else {
+            const glm::vec4 m = uv_matrix(ref);
+            const Vec s_turned = hn::Add(hn::Mul(hn::Set(f, m.x), s), hn::Mul(hn::Set(f, m.z), t));
+            const Vec t_turned = hn::Add(hn::Mul(hn::Set(f, m.y), s), hn::Mul(hn::Set(f, m.w), t));
+            s = hn::Add(s_turned, offset_s);
+            t = hn::Add(t_turned, offset_t);
+        }
+        alpha = hn::Mul(alpha, texture_alpha(f, terms, s, t, bits_of(f, hit)));
+    }
+    if (terms.mode == AlphaMode::kMask) return hn::And(hit, hn::Ge(alpha, hn::Set(f, terms.cutoff)));
+    return exceeds_threshold(f, state, T.triangle, alpha, lane, job, hit);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace pentaprism
+HWY_AFTER_NAMESPACE();
+
+#endif

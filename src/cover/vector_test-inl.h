@@ -1,0 +1,250 @@
+// The two passes over a triangle's work list: the edges' half-planes refuse vectors that hit nothing, then the exact
+// test, the same decisions as cover/exact.cpp bit for bit, with depth and writes.
+
+#if defined(PENTAPRISM_COVER_VECTOR_TEST_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef PENTAPRISM_COVER_VECTOR_TEST_INL_H
+#undef PENTAPRISM_COVER_VECTOR_TEST_INL_H
+#else
+#define PENTAPRISM_COVER_VECTOR_TEST_INL_H
+#endif
+
+#include "cover/exact.h"
+#include "cover/half_planes-inl.h"
+#include "cover/lanes-inl.h"
+#include "cover/vector_opacity-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pentaprism {
+namespace HWY_NAMESPACE {
+
+// What of the general test a triangle needs. Adding u*0 or t*0 is exact: the shorter kernels give the same bits.
+enum class Moves { kNot, kStraight, kInPieces };  // kInPieces: samples of other segments of the path are not ours
+enum class Seen { kFront, kBack, kBoth };         // the sides that some sample may see
+template <Moves kMovesT, bool kDefocusT, Seen kSeenT>
+struct Kind {
+    static constexpr Moves kMoves = kMovesT;
+    static constexpr bool kMotion = kMovesT != Moves::kNot, kDefocus = kDefocusT;
+    static constexpr Seen kSeen = kSeenT;
+};
+
+// Pass 1: keeps the vectors of the work list that have a sample inside the half-planes of all three edges.
+template <bool kMotion, bool kDefocus>
+std::size_t keep_within_edges(TileState& state, const HalfPlanes& H, std::size_t job_count) {
+    const F f;
+    constexpr int kEdge = HalfPlanes::kEdges;
+    Vec nx[3], ny[3], ku[3], kv[3], e[3], limit[3];
+    for (int k = 0; k < 3; ++k) {
+        nx[k] = hn::Set(f, H.nx[kEdge + k]);
+        ny[k] = hn::Set(f, H.ny[kEdge + k]);
+        ku[k] = hn::Set(f, H.ku[kEdge + k]);
+        kv[k] = hn::Set(f, H.kv[kEdge + k]);
+        e[k] = hn::Set(f, H.e[kEdge + k]);
+        limit[k] = hn::Set(f, H.f[kEdge + k]);
+    }
+    Job* HWY_RESTRICT jobs = state.jobs.data();
+    std::size_t count = 0;
+    for (std::size_t j = 0; j < job_count; ++j) {
+        const Job job = jobs[j];
+        const SampleVector& s = state.samples[state.place(job)];
+        bool any = false;
+        for (int lane = 0; lane < kLanes; lane += kWidth) {
+            const Vec x = hn::Load(f, s.x + lane), y = hn::Load(f, s.y + lane);
+            Vec room[3];  // to the edge
+            for (int k = 0; k < 3; ++k) {
+                Vec r = limit[k];
+                if constexpr (kMotion) r = hn::MulAdd(e[k], hn::Load(f, s.t + lane), r);
+                if constexpr (kDefocus)
+                    r = hn::MulAdd(ku[k], hn::Load(f, s.u + lane), hn::MulAdd(kv[k], hn::Load(f, s.v + lane), r));
+                room[k] = hn::NegMulAdd(nx[k], x, hn::NegMulAdd(ny[k], y, r));
+            }
+            const Vec least = hn::Min(hn::Min(room[0], room[1]), room[2]);
+            any |= !hn::AllFalse(f, hn::Ge(least, hn::Zero(f)));
+        }
+        jobs[count] = job;
+        count += any;
+    }
+    return count;
+}
+
+// Where the three vertices are seen from sixteen samples (docs/develop/algorithms.md 1.5).
+struct Deltas {
+    Vec x[3], y[3], w[3], z[3];
+    Vec tau;
+};
+
+template <class K>
+HWY_INLINE Deltas deltas(F f, const LocalTriangle& T, const SampleVector& s, int lane) {
+    Deltas D;
+    const Vec hx = hn::Load(f, s.x + lane), hy = hn::Load(f, s.y + lane);
+    Vec tau = hn::Zero(f);
+    if constexpr (K::kMotion) tau = hn::Load(f, s.t + lane);
+    if constexpr (K::kMoves == Moves::kInPieces) tau = hn::MulAdd(tau, hn::Set(f, T.segments), hn::Set(f, -T.segment));
+    D.tau = tau;
+    for (int i = 0; i < 3; ++i) {
+        Vec x = hn::Set(f, T.qx[i]), y = hn::Set(f, T.qy[i]), w = hn::Set(f, T.qw[i]), c = hn::Set(f, T.qc[i]);
+        if constexpr (K::kMotion) {
+            x = hn::MulAdd(tau, hn::Set(f, T.dx[i]), x);
+            y = hn::MulAdd(tau, hn::Set(f, T.dy[i]), y);
+            w = hn::MulAdd(tau, hn::Set(f, T.dw[i]), w);
+            if constexpr (K::kDefocus) c = hn::MulAdd(tau, hn::Set(f, T.dc[i]), c);
+        }
+        if constexpr (K::kDefocus) {
+            x = hn::MulAdd(hn::Load(f, s.u + lane), c, x);
+            y = hn::MulAdd(hn::Load(f, s.v + lane), c, y);
+        }
+        D.x[i] = hn::NegMulAdd(hx, w, x);
+        D.y[i] = hn::NegMulAdd(hy, w, y);
+        D.w[i] = w;
+        D.z[i] = T.orthographic ? hn::MulAdd(tau, hn::Set(f, T.dz[i]), hn::Set(f, T.qz[i])) : w;
+    }
+    return D;
+}
+
+HWY_INLINE Vec edge(const Deltas& D, int i, int j) {
+    return hn::Sub(hn::Mul(D.x[i], D.y[j]), hn::Mul(D.x[j], D.y[i]));
+}
+
+struct Edges {
+    Vec e[3];
+};
+HWY_INLINE Edges edges(const Deltas& D) {
+    return {{edge(D, 1, 2), edge(D, 2, 0), edge(D, 0, 1)}};
+}
+
+// Lanes that are inside all edges for certain, and those with a sample exactly on an edge and outside of none: the
+// scalar test decides these.
+//
+// `inside` needs none of the exact test's other questions. Products and differences round monotonically, so e_k > 0
+// says that the cross product of the float positions is positive: the origin is a convex combination of them with
+// positive weights e_k, hence (N) holds, and the sum of e_k is not 0.
+struct Decision {
+    Mask inside, tied;
+};
+template <class K>
+HWY_INLINE Decision decide(F f, const Deltas& D, const Edges& E) {
+    const Vec zero = hn::Zero(f);
+    Decision decision;
+    if constexpr (K::kSeen == Seen::kBack) {
+        const Vec most = hn::Max(hn::Max(E.e[0], E.e[1]), E.e[2]);
+        decision = {hn::Lt(most, zero), hn::Eq(most, zero)};
+    } else {
+        const Vec least = hn::Min(hn::Min(E.e[0], E.e[1]), E.e[2]);
+        decision = {hn::Gt(least, zero), hn::Eq(least, zero)};
+    }
+    if constexpr (K::kSeen == Seen::kBoth) {
+        const Vec most = hn::Max(hn::Max(E.e[0], E.e[1]), E.e[2]);
+        decision = {hn::Or(decision.inside, hn::Lt(most, zero)), hn::Or(decision.tied, hn::Eq(most, zero))};
+    }
+    if constexpr (K::kMoves == Moves::kInPieces) {
+        const Mask ours = hn::And(hn::Ge(D.tau, zero), hn::Lt(D.tau, hn::Set(f, 1.0f)));
+        decision = {hn::And(decision.inside, ours), hn::And(decision.tied, ours)};
+    }
+    return decision;
+}
+
+// What the scalar test says of the lanes in `tied`; returns those it accepts, with their depth.
+HWY_NOINLINE Mask decide_ties(F f, const TileState& state, const LocalTriangle& T, const SampleVector& s, int lane,
+                              Mask tied, Vec& depth) {
+    HWY_ALIGN std::int32_t ask[kLanes];
+    HWY_ALIGN float depths[kLanes];
+    const I i;
+    hn::Store(hn::VecFromMask(i, hn::RebindMask(i, tied)), i, ask);
+    hn::Store(depth, f, depths);
+    for (int k = 0; k < kWidth; ++k) {
+        if (ask[k] == 0) continue;
+        const LocalSample sample{s.x[lane + k], s.y[lane + k], s.u[lane + k], s.v[lane + k], s.t[lane + k]};
+        const SampleHit hit = cover_sample(T, sample, state.centre);
+        ask[k] = hit.hit ? -1 : 0;
+        if (hit.hit) depths[k] = hit.depth;
+    }
+    depth = hn::Load(f, depths);
+    return hn::RebindMask(f, hn::Lt(hn::Load(i, ask), hn::Zero(i)));
+}
+
+// Lanes within the screen bounds of a triangle that reaches the camera plane.
+HWY_INLINE Mask in_box(F f, const TileState& state, const LocalTriangle& T, const SampleVector& s, int lane) {
+    const Vec gx = hn::Add(hn::Set(f, state.centre.x), hn::Load(f, s.x + lane));
+    const Vec gy = hn::Add(hn::Set(f, state.centre.y), hn::Load(f, s.y + lane));
+    return hn::And(hn::And(hn::Ge(gx, hn::Set(f, T.box[0])), hn::Le(gx, hn::Set(f, T.box[1]))),
+                   hn::And(hn::Ge(gy, hn::Set(f, T.box[2])), hn::Le(gy, hn::Set(f, T.box[3]))));
+}
+
+// Whether near and far distance must be asked: depths lie between those of the corners, which move monotonically.
+inline bool may_leave_depth_range(const LocalTriangle& T) {
+    const float* q = T.orthographic ? T.qz : T.qw;
+    const float* d = T.orthographic ? T.dz : T.dw;
+    bool within = true;
+    for (int i = 0; i < 3; ++i) {
+        const float z0 = q[i], z1 = q[i] + d[i];
+        within = within && z0 >= T.z_near && z1 >= T.z_near && z0 <= T.z_far && z1 <= T.z_far;
+    }
+    return !within;
+}
+
+// Pass 2: the exact test, depth, opacity and writes.
+template <class K>
+void write_hits(TileState& state, const LocalTriangle& T, std::size_t count) {
+    const F f;
+    const U u;
+    const Vec zero = hn::Zero(f);
+    const bool ask_range = may_leave_depth_range(T);
+    const auto triangle = hn::Set(u, T.triangle);
+    const OpacityTerms terms =
+        T.alpha_tested && count != 0 ? opacity_terms(state.work.frame, T.triangle) : OpacityTerms();
+    std::int64_t covered = 0;
+    for (std::size_t j = 0; j < count; ++j) {
+        const Job job = state.jobs[j];
+        const std::size_t place = state.place(job);
+        const SampleVector& s = state.samples[place];
+        float* depths = &state.hits.depth[place * kLanes];
+        std::uint32_t* triangles = &state.hits.triangle[place * kLanes];
+        Vec farthest = zero;
+        for (int lane = 0; lane < kLanes; lane += kWidth) {
+            const Deltas D = deltas<K>(f, T, s, lane);
+            const Edges E = edges(D);
+            const Decision decision = decide<K>(f, D, E);
+            Mask hit = decision.inside;
+            if (T.behind) hit = hn::And(hit, in_box(f, state, T, s, lane));
+            const Vec sum = hn::Add(hn::Add(E.e[0], E.e[1]), E.e[2]);
+            Vec depth = hn::Add(hn::Add(hn::Mul(E.e[0], D.z[0]), hn::Mul(E.e[1], D.z[1])), hn::Mul(E.e[2], D.z[2]));
+            depth = hn::Div(depth, sum);
+            depth = hn::Min(hn::Max(depth, hn::Min(hn::Min(D.z[0], D.z[1]), D.z[2])),
+                            hn::Max(hn::Max(D.z[0], D.z[1]), D.z[2]));
+            if (ask_range)
+                hit = hn::And(hit, hn::And(hn::Ge(depth, hn::Set(f, T.z_near)), hn::Le(depth, hn::Set(f, T.z_far))));
+            if (HWY_UNLIKELY(!hn::AllFalse(f, decision.tied)))
+                hit = hn::Or(hit, decide_ties(f, state, T, s, lane, decision.tied, depth));
+            covered += static_cast<std::int64_t>(hn::CountTrue(f, hit));
+            const Vec stored = hn::Load(f, depths + lane);
+            const auto stored_triangle = hn::Load(u, triangles + lane);
+            const Mask equal = hn::And(hit, hn::Eq(depth, stored));
+            hit = hn::And(hit, hn::Lt(depth, stored));
+            if (HWY_UNLIKELY(!hn::AllFalse(f, equal))) {
+                const Mask lower =
+                    hn::RebindMask(f, hn::Lt(hn::BitCast(I(), triangle), hn::BitCast(I(), stored_triangle)));
+                hit = hn::Or(hit, hn::And(equal, lower));
+            }
+            if (T.alpha_tested && !hn::AllFalse(f, hit))
+                hit = decide_opacity(f, state, T, terms, E.e, sum, lane, job, hit);
+            const Vec nearest = hn::IfThenElse(hit, depth, stored);
+            hn::Store(nearest, f, depths + lane);
+            hn::Store(hn::IfThenElse(hn::RebindMask(u, hit), triangle, stored_triangle), u, triangles + lane);
+            farthest = hn::Max(farthest, nearest);
+        }
+        state.farthest[job] = hn::GetLane(hn::MaxOfLanes(f, farthest));
+    }
+    state.counts.tested += static_cast<std::int64_t>(count) * kLanes;
+    state.counts.covered += covered;
+}
+
+template <class K>
+void cover_jobs(TileState& state, const LocalTriangle& T, const HalfPlanes* H, std::size_t jobs) {
+    if (H != nullptr) jobs = keep_within_edges<K::kMotion, K::kDefocus>(state, *H, jobs);
+    write_hits<K>(state, T, jobs);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace pentaprism
+HWY_AFTER_NAMESPACE();
+
+#endif

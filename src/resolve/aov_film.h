@@ -1,0 +1,75 @@
+#pragma once
+// Samples to pixels of arbitrary output variables (pentaprism/aov.h): the pixel's own samples, in index order, so that
+// nothing depends on tiles or threads.
+
+#include <memory>
+#include <pentaprism/aov.h>
+#include <span>
+#include <vector>
+
+#include "cover/hits.h"
+#include "resolve/flow.h"
+#include "resolve/named_ids.h"
+#include "resolve/surface_samples.h"
+#include "shade/sample_order.h"
+#include "shade/tile_shade.h"
+
+namespace pentaprism {
+
+/// What resolving looks up; outlives the film.
+struct AovSources {
+    const ShadingScene* scene = nullptr;
+    const FrameIds* ids = nullptr;  ///< for ids and Cryptomatte, else may be null
+    const Flow* flow = nullptr;     ///< for motion, else may be null
+    glm::vec3 background{0.0f};
+    float brightness = 1.0f;  ///< of colours in the picture: 2^exposure
+};
+
+/// One output variable of one pixel after the other: begin(), then hit() or miss() for each sample, then end().
+class AovResolver {
+  public:
+    virtual ~AovResolver() = default;
+    virtual void begin() = 0;
+    virtual void hit(const SurfaceSample& sample, const glm::vec3& color) = 0;
+    virtual void miss(const glm::vec3& background) = 0;
+    /// `out` has a place for each channel of the AovInfo.
+    virtual void end(float* out) = 0;
+};
+std::unique_ptr<AovResolver> make_resolver(Aov aov, const AovSources& sources);
+
+/// Holds a window of rows that slides down the picture, as Film does.
+class AovFilm {
+  public:
+    /// Pixels [x0, x1) are delivered; `rows`: height of the window.
+    AovFilm(std::span<const Aov> aovs, const AovSources& sources, int x0, int x1, int rows);
+
+    /// What a thread needs, kept between tiles.
+    struct Worker {
+        SurfaceSamples surfaces;
+        SampleOrder order;
+        std::vector<std::unique_ptr<AovResolver>> resolvers;
+    };
+
+    /// Resolves the tile's pixels between the columns x0 and x1 and the rows y0 and y1. Thread-safe for different
+    /// tiles.
+    void add(const Tile& tile, const SampleTable& samples, const Hits& hits, const TileShade& shade, int y0, int y1,
+             Worker& worker);
+
+    /// The channels one after the other, each width * count pixels. The span stays valid until the next call.
+    std::span<const float> rows(int first, int count);
+
+  private:
+    void resolve_pixel(const SampleTable& samples, const Hits& hits, const TileShade& shade, int px, int py,
+                       Worker& worker, std::span<const SampleVector> vectors);
+    float* pixel(int x, int y) {
+        return &pixels_[(static_cast<std::size_t>(y % rows_) * width_ + (x - x0_)) * channels_];
+    }
+
+    std::vector<Aov> aovs_;
+    AovSources sources_;
+    int x0_, width_, rows_, channels_ = 0;
+    std::vector<float> pixels_;  // row y at (y mod rows_); the channels of a pixel together
+    std::vector<float> delivered_;
+};
+
+}  // namespace pentaprism

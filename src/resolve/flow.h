@@ -1,0 +1,30 @@
+#pragma once
+// Where the points of a frame's surfaces are on the screen one frame earlier and later. The scene is posed at
+// mid-shutter of the neighbouring frames, each through its own camera: displacement between frames, whatever the
+// shutter.
+
+#include <glm/vec2.hpp>
+#include <optional>
+
+#include "frame/frame.h"
+#include "resolve/surface_samples.h"
+
+namespace pentaprism {
+
+class Flow {
+  public:
+    /// `settings` and `number` are those of the frame that is rendered. The scene must outlive this.
+    Flow(const Scene& scene, const RenderSettings& settings, double number);
+
+    /// From the point's place now to its place a frame later and earlier: pixels, x right, y DOWN. Nothing where one of
+    /// the places is not in front of the camera.
+    std::optional<glm::vec2> forward(const SurfaceSample& sample) const { return between(now_, next_, sample); }
+    std::optional<glm::vec2> backward(const SurfaceSample& sample) const { return between(now_, previous_, sample); }
+
+  private:
+    static std::optional<glm::vec2> between(const Frame& from, const Frame& to, const SurfaceSample& sample);
+
+    Frame previous_, now_, next_;
+};
+
+}  // namespace pentaprism

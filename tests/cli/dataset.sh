@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# Sharp twins and data sets: what is in the folder, and that its parts agree with one another and with plain rendering.
+support=$(cd "$(dirname "$0")/../support" && pwd)
+source "$(dirname "$0")/lib.bash"
+small=(-r 64x36 -s 4 --fstop 2)
+
+succeeds render builtin:cubes -o plain.exr --frame 3 "${small[@]}"
+succeeds render builtin:cubes -o a.exr --frame 3 "${small[@]}" --sharp
+check "the twin is beside the picture" test -s a.sharp.exr
+check "a twin does not change the picture" cmp -s a.exr plain.exr
+succeeds render builtin:cubes -o still.exr --frame 3 "${small[@]}" --no-motion-blur --no-defocus
+
+succeeds render builtin:cubes --dataset set -f 3-4 "${small[@]}"
+for kind in blur sharp sharp-open sharp-close; do
+    check "$kind has pictures of both kinds" test -s set/$kind/0003.exr -a -s set/$kind/0003.png -a -s set/$kind/0004.exr
+done
+check "no .part is left" test -z "$(find . -name '*.part' -print -quit)"
+check "the parts of the data set agree" python3 - "$support" <<'PY'
+import json, struct, sys
+sys.path.insert(0, sys.argv[1])
+import read_exr
+
+def pixels(name, part=0):
+    return read_exr.read(name)[part]["channels"]
+
+blur, plain = pixels("set/blur/0003.exr"), pixels("plain.exr")
+assert all(blur[c] == plain[c] for c in "RGBAZ")
+still, twin = pixels("still.exr"), pixels("a.sharp.exr")
+sharp = pixels("set/sharp/0003.exr")
+assert all(sharp[c] == still[c] == twin[c] for c in "RGBAZ")
+assert sharp["R"] != blur["R"]
+opened, closed = pixels("set/sharp-open/0003.exr"), pixels("set/sharp-close/0003.exr")
+assert opened["R"] != sharp["R"] != closed["R"] != opened["R"]
+assert pixels("set/depth/0003.exr")["Z"] == blur["Z"]
+
+npy = open("set/depth/0003.npy", "rb").read()
+assert npy[:8] == b"\x93NUMPY\x01\x00"
+(length,) = struct.unpack_from("<H", npy, 8)
+assert (10 + length) % 64 == 0 and b"(36, 64)" in npy[10:10 + length]
+assert list(struct.unpack_from("<%df" % (64 * 36), npy, 10 + length)) == list(blur["Z"])
+flow = pixels("set/flow/0003.exr")
+flo = open("set/flow/0003.flo", "rb").read()
+assert struct.unpack_from("<fii", flo) == (202021.25, 64, 36)
+assert list(struct.unpack_from("<%df" % (2 * 64 * 36), flo, 12))[0::2] == list(flow["forward.u"])
+assert any(abs(u) > 0.1 for u in flow["forward.u"])
+
+manifest, camera = json.load(open("set/manifest.json")), json.load(open("set/camera.json"))
+assert manifest["frames"] == 2 == len(camera["frames"])
+frame = camera["frames"][0]
+assert frame["frame"] == 3 and frame["intrinsics"]["cx"] == 32
+assert abs(frame["exposure_s"] - 0.5 / 24) < 1e-12 or frame["exposure_s"] > 0
+assert frame["knots"][0]["time_s"] == frame["shutter_open_s"] and frame["knots"][-1]["time_s"] == frame["shutter_close_s"]
+assert frame["knots"][0]["world_to_camera_column_major"] != frame["knots"][-1]["world_to_camera_column_major"]
+assert "blur/0004.png" in manifest["files"] and len(manifest["files"]["flow/0003.flo"]) == 32
+PY
+
+# A second run makes what is missing; the manifest covers both.
+before=$(cksum set/blur/0003.exr)
+rm set/frames/0004.json
+succeeds render builtin:cubes --dataset set -f 3-5 "${small[@]}" --skip-existing
+check "whole frames are left alone" test "$before" = "$(cksum set/blur/0003.exr)"
+check "missing ones are made" json set/manifest.json 'd["frames"] == 3'
+
+refuses 2 '--dataset' render builtin:cubes --dataset set -o a.png "${small[@]}"
+refuses 2 '--output' render builtin:cubes "${small[@]}"
+refuses 2 '--aov' render builtin:cubes --dataset set --aov coc "${small[@]}"
+touch file
+refuses 4 '--dataset file' render builtin:cubes --dataset file "${small[@]}"
+finish

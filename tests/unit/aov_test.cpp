@@ -1,0 +1,183 @@
+// Arbitrary output variables against what a scene of one moving square must give.
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <gtest/gtest.h>
+#include <pentaprism/aov.h>
+#include <pentaprism/error.h>
+#include <pentaprism/render.h>
+
+#include "resolve/named_ids.h"
+#include "unit/small_scene.h"
+
+namespace pentaprism {
+namespace {
+
+using namespace small_scene;
+
+constexpr int kSize = 32;
+constexpr double kFocal = kSize / 2;  // pixels: the camera sees [-1, 1] at depth 1
+
+// A square of 3 metres half width at depth 2 moves by (1, 0.5) metres a second; a background square stands behind it.
+Scene scene_of_two() {
+    Scene scene = scene_with_camera();
+    scene.materials.resize(2);
+    scene.materials[0].name = "paint";
+    scene.materials[0].double_sided = true;
+    const Index mover = add_mesh(scene, {square(0.5f, 0.0f, 0)}), wall = add_mesh(scene, {square(20.0f, -8.0f, 1)});
+    scene.nodes[mover].name = "mover";
+    scene.nodes[wall].name = "mover";  // a name that is taken
+    Channel channel;
+    channel.node = mover;
+    channel.path = ChannelPath::kTranslation;
+    channel.times = {0.0f, 10.0f};
+    channel.values = {-5.0f, -2.5f, -2.0f, 5.0f, 2.5f, -2.0f};
+    scene.animations.push_back({"move", {channel}, 10.0});
+    return scene;
+}
+
+RenderSettings settings_with(std::vector<Aov> aovs) {
+    RenderSettings settings;
+    settings.image.width = settings.image.height = kSize;
+    settings.image.spp = 16;
+    settings.image.aovs = std::move(aovs);
+    settings.animation.fps = 8.0;
+    settings.shutter.shutter = 0.25;
+    return settings;
+}
+
+Picture picture_of(const Scene& scene, const RenderSettings& settings, double frame = 40.0) {
+    RenderStats stats;
+    return render_picture(scene, settings, frame, stats);
+}
+
+float value(const Picture& picture, int channel, int x, int y) {
+    return picture.aovs[(static_cast<std::size_t>(channel) * picture.height + y) * picture.width + x];
+}
+std::uint32_t number(const Picture& picture, int channel, int x, int y) {
+    return std::bit_cast<std::uint32_t>(value(picture, channel, x, y));
+}
+
+// At frame 40, 5 s, the mover is in the middle of the picture; the corner sees the wall.
+constexpr int kMiddle = kSize / 2, kCorner = 2;
+
+TEST(Aovs, TellWhatIsSeen) {
+    const Picture picture =
+        picture_of(scene_of_two(), settings_with({Aov::kDepth, Aov::kNormal, Aov::kPosition, Aov::kUv}));
+    EXPECT_FLOAT_EQ(value(picture, 0, kMiddle, kMiddle), 2.0f);
+    EXPECT_FLOAT_EQ(value(picture, 0, kCorner, kCorner), 8.0f);
+    EXPECT_NEAR(value(picture, 1, kMiddle, kMiddle), 0.0, 1e-6);
+    EXPECT_NEAR(value(picture, 3, kMiddle, kMiddle), 1.0, 1e-6) << "z of the normal";
+    EXPECT_NEAR(value(picture, 6, kCorner, kCorner), -8.0, 1e-5) << "z of the position";
+    // x of the wall at the middle of pixel 2, mean of stratified samples.
+    EXPECT_NEAR(value(picture, 4, kCorner, kCorner), 8.0 * (kCorner + 0.5 - kSize / 2) / kFocal, 0.05);
+    EXPECT_NEAR(value(picture, 8, kCorner, kCorner), 0.5 - 0.025 * 8.0 * (kSize / 2 - kCorner - 0.5) / kFocal, 2e-3);
+}
+
+TEST(Aovs, MotionIsTheWayOnTheScreenFromFrameToFrame) {
+    const Picture picture = picture_of(scene_of_two(), settings_with({Aov::kMotion}));
+    // 1/8 of a second: (1/8, 1/16) metres at depth 2; v counts down.
+    const double u = kFocal * 0.125 / 2, v = -kFocal * 0.0625 / 2;
+    EXPECT_NEAR(value(picture, 0, kMiddle, kMiddle), u, 1e-5);
+    EXPECT_NEAR(value(picture, 1, kMiddle, kMiddle), v, 1e-5);
+    EXPECT_NEAR(value(picture, 2, kMiddle, kMiddle), -u, 1e-5);
+    EXPECT_NEAR(value(picture, 3, kMiddle, kMiddle), -v, 1e-5);
+    for (int channel = 0; channel < 4; ++channel) EXPECT_EQ(value(picture, channel, kCorner, kCorner), 0.0f);
+}
+
+TEST(Aovs, TheCircleOfConfusionIsThatOfTheThinLensWithItsSign) {
+    RenderSettings settings = settings_with({Aov::kCoc});
+    settings.camera.lens_radius = 0.1;
+    settings.camera.focus_distance = 4.0;
+    const Picture picture = picture_of(scene_of_two(), settings);
+    const auto radius = [](double depth) { return 0.1 * kFocal * (depth - 4.0) / (4.0 * depth); };
+    EXPECT_NEAR(value(picture, 0, kMiddle, kMiddle), radius(2.0), 1e-5);
+    EXPECT_LT(value(picture, 0, kMiddle, kMiddle), 0.0f);
+    EXPECT_NEAR(value(picture, 0, kCorner, kCorner), radius(8.0), 1e-5);
+    // A pinhole has none.
+    EXPECT_EQ(value(picture_of(scene_of_two(), settings_with({Aov::kCoc})), 0, kMiddle, kMiddle), 0.0f);
+}
+
+TEST(Aovs, IdsGoToWhatMostSamplesSee) {
+    Scene scene = scene_of_two();
+    scene.roots.pop_back();  // no wall: the corner is background
+    scene.nodes.back().visible = false;
+    const RenderSettings settings = settings_with({Aov::kObjectId, Aov::kMaterialId, Aov::kTime, Aov::kCoverage});
+    const Picture picture = picture_of(scene, settings);
+    EXPECT_EQ(number(picture, 0, kMiddle, kMiddle), 1u);
+    EXPECT_EQ(number(picture, 1, kMiddle, kMiddle), 1u);
+    EXPECT_EQ(number(picture, 0, kCorner, kCorner), 0u);
+    EXPECT_LT(value(picture, 2, kMiddle, kMiddle), 1.0f / 16);
+    EXPECT_GT(value(picture, 3, kMiddle, kMiddle), 15.0f / 16);
+    EXPECT_EQ(value(picture, 4, kMiddle, kMiddle), 1.0f);
+    EXPECT_EQ(value(picture, 5, kMiddle, kMiddle), 1.0f);
+    EXPECT_EQ(value(picture, 5, kCorner, kCorner), 0.0f);
+    bool partly = false;
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+            const float coverage = value(picture, 5, x, y);
+            EXPECT_EQ(coverage * 16, std::round(coverage * 16));
+            EXPECT_EQ(number(picture, 0, x, y) == 1u, coverage > 0.5f) << x << "," << y;  // a tie is background
+            partly = partly || (coverage > 0 && coverage < 1);
+        }
+    EXPECT_TRUE(partly);
+}
+
+TEST(Aovs, VarianceIsThatOfTheMeanOfTheSamples) {
+    Scene scene = scene_of_two();
+    scene.roots.pop_back();
+    scene.nodes.back().visible = false;
+    scene.materials[0].unlit = true;  // white, on black
+    const Picture picture = picture_of(scene, settings_with({Aov::kCoverage, Aov::kVariance}));
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+            const double p = value(picture, 0, x, y);
+            EXPECT_NEAR(value(picture, 1, x, y), p * (1 - p) / 15.0, 1e-6);
+        }
+}
+
+TEST(Aovs, DoNotDependOnTilesThreadsOrOneAnother) {
+    std::vector<Aov> all;
+    for (const AovInfo& info : aov_table()) all.push_back(info.aov);
+    RenderSettings settings = settings_with(all);
+    settings.image.height = 80;
+    settings.camera.lens_radius = 0.1;
+    settings.camera.focus_distance = 4.0;
+    const Scene scene = scene_of_two();
+    const Picture one = picture_of(scene, settings);
+    settings.method.tile_size = 8;
+    settings.method.threads = 1;
+    const Picture other = picture_of(scene, settings);
+    ASSERT_EQ(one.aovs.size(), other.aovs.size());
+    EXPECT_EQ(0, std::memcmp(one.aovs.data(), other.aovs.data(), one.aovs.size() * sizeof(float)));
+    EXPECT_EQ(one.rgba, other.rgba);
+    settings.image.aovs.clear();
+    EXPECT_EQ(one.rgba, picture_of(scene, settings).rgba) << "the picture does not change";
+}
+
+TEST(Aovs, TableIsInTheOrderOfItsEnumeration) {
+    for (std::size_t i = 0; i < aov_table().size(); ++i)
+        EXPECT_EQ(static_cast<std::size_t>(aov_table()[i].aov), i) << aov_table()[i].name;
+    EXPECT_EQ(aov_named("coc"), Aov::kCoc);
+    EXPECT_THROW(aov_named("beauty"), Error);
+}
+
+TEST(Cryptomatte, IdsAreMurmurHashesOfNames) {
+    NamedIds ids;
+    EXPECT_EQ(ids.add("hello", ""), 1u);
+    EXPECT_EQ(std::bit_cast<std::uint32_t>(ids.cryptomatte_id(1)), 0x248bfa47u);
+    EXPECT_EQ(ids.add("hello world", ""), 2u);
+    EXPECT_EQ(std::bit_cast<std::uint32_t>(ids.cryptomatte_id(2)), 0x5e928f0fu);
+    EXPECT_EQ(ids.add("hello", ""), 3u);
+    EXPECT_EQ(ids.name(3), "hello.2");
+    EXPECT_EQ(ids.add("", "node 7"), 4u);
+    EXPECT_EQ(ids.name(4), "node 7");
+    EXPECT_EQ(ids.cryptomatte_id(0), 0.0f);
+    for (std::uint32_t n = 5; n < 3000; ++n) {
+        ids.add("object " + std::to_string(n), "");
+        EXPECT_TRUE(std::isnormal(ids.cryptomatte_id(n))) << ids.name(n);
+    }
+}
+
+}  // namespace
+}  // namespace pentaprism
