@@ -29,7 +29,7 @@ a:hover{text-decoration:underline}
 .card{background:var(--card);border:1px solid var(--line);border-radius:10px;padding:12px 16px}
 .card b{display:block;font-size:1.5rem;line-height:1.25}
 .card span{color:var(--soft);font-size:.88rem}
-.panels{display:grid;grid-template-columns:repeat(auto-fit,minmax(300px,1fr));gap:12px;margin:10px 0}
+.panels{display:grid;grid-template-columns:repeat(auto-fill,minmax(340px,1fr));gap:12px;margin:10px 0}
 .panel{background:var(--card);border:1px solid var(--line);border-radius:10px;padding:8px 8px 2px}
 svg{width:100%;height:auto;display:block}
 svg text{font:11px system-ui,sans-serif;fill:var(--soft)}
