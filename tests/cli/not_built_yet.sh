@@ -10,16 +10,12 @@ done <<'END'
 --focus-range 1,2
 --max-foreground-blur 5
 --backend gl
---shading sample
---shading decoupled
 --sampler sobol
 --aov depth,albedo
 --aov ste
 --samples dump
 --resume
 --shard 1/4
---background sky.hdr
---background sky.exr
 END
 for command in merge view; do
     refuses 2 "$command is not built yet \(planned: see CHANGELOG\)" "$command" some thing --option
