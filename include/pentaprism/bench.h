@@ -57,6 +57,7 @@ struct BenchRow {
     std::string scene, effect, method, backend = "cpu";
     bool conservative = true;     ///< the method promises to lose no sample
     bool own_arithmetic = false;  ///< decides by other arithmetic than the exact test: differs at edges and depth ties
+    bool own_samples = false;     ///< sees by other samples than the rest, so that the picture is another one
     std::int64_t samples = 0;     ///< of the tiles that were measured (BenchCell::share)
     std::int64_t tested = 0;      ///< exact 5D tests
     std::int64_t covered = 0;     ///< of them accepted

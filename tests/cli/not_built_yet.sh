@@ -27,6 +27,7 @@ check "no file was made" test ! -e a.exr
 render_help=$(help_of render)
 for option in -r,--resolution -s,--spp --filter --crop --exposure --tonemap --background --camera --focal-length --sensor-width \
     --fstop --lens-radius --focus-distance --focus-object --focus-pixel --aperture-blades --aperture-rotation --aperture-ratio \
+    --aperture-roundness \
     --focus-range --max-foreground-blur --no-defocus --shutter --shutter-position --shutter-curve --rolling-shutter \
     --rolling-shutter-duration --motion-segments --no-motion-blur --frame -f,--frames --fps --animation --culling --visibility \
     --backend --shading --sampler --seed -t,--threads --aov --sharp --dataset --stats --samples --overwrite --skip-existing \
