@@ -39,8 +39,8 @@ struct BenchPlan {
     double frame = -1.0;      ///< below 0: 24 of a built-in scene, 0 of a file
     int runs = 5;             ///< timed runs of each method, methods in turn; the median counts
     double seconds = 4.0;     ///< a slower method gets fewer runs: as many as fit in these seconds, at least one
-    std::int64_t most_tests = 32'000'000;  ///< where the bounding box alone would need more exact tests, a part of the
-                                           ///< picture's tiles is measured, the same with all methods; 0: no limit
+    std::int64_t most_tests = 32'000'000;  ///< where the triangles' boxes hold more samples, a part of the picture's
+                                           ///< tiles is measured, the same with all methods; 0: no limit
     std::vector<int> peer_threads;  ///< Embree is timed with each of these numbers of threads (0: all); empty: not
     bool images = true;             ///< pictures and heat maps, for bench_html()
     int picture_width = 512, picture_spp = 32;  ///< of the frames that are shown
@@ -57,6 +57,7 @@ struct BenchRow {
     std::string scene, effect, method, backend = "cpu";
     bool conservative = true;     ///< the method promises to lose no sample
     bool own_arithmetic = false;  ///< decides by other arithmetic than the exact test: differs at edges and depth ties
+    bool own_samples = false;     ///< sees by other samples than the rest, so that the picture is another one
     std::int64_t samples = 0;     ///< of the tiles that were measured (BenchCell::share)
     std::int64_t tested = 0;      ///< exact 5D tests
     std::int64_t covered = 0;     ///< of them accepted

@@ -68,6 +68,7 @@ struct CameraSettings {
     std::optional<std::array<double, 2>> focus_pixel;  ///< pixel whose nearest surface at mid-shutter is in focus
     std::optional<int> aperture_blades;                ///< 0: a disk, else 3 or more
     std::optional<double> aperture_rotation_deg;       ///< 0
+    std::optional<double> aperture_roundness;          ///< 0: straight blades, to 1: a disk
     std::optional<double> aperture_ratio;              ///< 1; height of the circle of confusion over its width
 };
 

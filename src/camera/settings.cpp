@@ -66,6 +66,7 @@ void check(const CameraSettings& camera, const ImageSettings& image) {
     check_from("--lens-radius", camera.lens_radius, 0.0, kHuge);
     check_above("--focus-distance", camera.focus_distance, 0.0);
     check_from("--aperture-rotation", camera.aperture_rotation_deg, -kHuge, kHuge);
+    check_from("--aperture-roundness", camera.aperture_roundness, 0.0, 1.0);
     check_above("--aperture-ratio", camera.aperture_ratio, 0.0);
     if (camera.fstop && camera.lens_radius)
         refuse("--fstop and --lens-radius say the same in two ways; give one of them");
@@ -268,6 +269,7 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
     put(json, "focus_pixel", camera.focus_pixel);
     put(json, "aperture_blades", camera.aperture_blades);
     put(json, "aperture_rotation_deg", camera.aperture_rotation_deg);
+    put(json, "aperture_roundness", camera.aperture_roundness);
     put(json, "aperture_ratio", camera.aperture_ratio);
     json["motion_blur"] = shutter.motion_blur;
     put(json, "shutter", shutter.shutter);

@@ -119,6 +119,7 @@ void resolve_lens(const Scene& scene, const CameraSettings& settings, const Lens
     view.focal_length_mm = view.perspective ? view.fx * sensor_width_mm / view.width : 0.0;
     lens.blades = settings.aperture_blades.value_or(info.aperture_blades.value_or(0));
     lens.rotation_deg = settings.aperture_rotation_deg.value_or(info.aperture_rotation_deg.value_or(0.0));
+    lens.roundness = settings.aperture_roundness.value_or(0.0);
     lens.ratio = settings.aperture_ratio.value_or(info.aperture_ratio.value_or(1.0));
     if (!settings.defocus) return;
     if (settings.lens_radius) {

@@ -28,6 +28,7 @@ struct Lens {
     double fstop = 0.0;           ///< 0: pinhole
     int blades = 0;               ///< 0: a disk
     double rotation_deg = 0.0;
+    double roundness = 0.0;  ///< of the blades: 0 straight, 1 arcs of the disk
     bool pinhole() const { return radius == 0.0; }
 };
 

@@ -155,7 +155,7 @@ void add_how(CLI::App& command, BenchCommand& bench) {
               "A slower method gets as many runs as fit in S seconds, at least one (default 4; --quick 0.05)",
               [&](const std::string& text) { bench.seconds = parse_number("--seconds", text); });
     add_value(command, group, "--tests", "N",
-              "Where the box alone needs over N exact tests, a part of the tiles is measured; 0: always all (default "
+              "Where the triangles' boxes hold over N samples, a part of the tiles is measured; 0: always all (default "
               "32000000; --quick 1000000)",
               [&](const std::string& text) {
                   bench.tests = parse_whole("--tests", text, 0, std::numeric_limits<std::int64_t>::max());

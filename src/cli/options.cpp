@@ -118,6 +118,8 @@ void add_lens_options(CLI::App& command, CameraSettings& camera) {
               });
     add_number(command, group, "--aperture-rotation", "DEG", "Turns the iris; degrees (default: the camera's, else 0)",
                camera.aperture_rotation_deg);
+    add_number(command, group, "--aperture-roundness", "R", "Curves the blades, 0: straight, to 1: a disk (default 0)",
+               camera.aperture_roundness);
     add_number(command, group, "--aperture-ratio", "R",
                "Height over width of the circle of confusion (default: the camera's, else 1)", camera.aperture_ratio);
     add_planned_value(command, group, "--focus-range", "NEAR,FAR", "Keep this range of depth sharp; metres");

@@ -58,8 +58,10 @@ void check_output_name(const fs::path& file, const char* option) {
 }
 
 void check_names(const RenderCommand& command) {
-    if (command.out.empty() == command.dataset.empty())
-        throw Error(ErrorKind::kUsage, "one of --output and --dataset says where the frames go");
+    if (command.out.empty() && command.dataset.empty())
+        throw Error(ErrorKind::kUsage, "--output is required, and must end in .exr or .png (or give --dataset DIR)");
+    if (!command.out.empty() && !command.dataset.empty())
+        throw Error(ErrorKind::kUsage, "--output and --dataset exclude each other: a data set has names of its own");
     if (!command.stats.empty()) check_output_name(frame_file(command.stats, command.frames.front()), "--stats");
     if (!command.dataset.empty()) {
         if (!command.settings.image.aovs.empty() || command.sharp)

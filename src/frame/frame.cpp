@@ -143,7 +143,9 @@ PosedPart pose_part(const Scene& scene, const View& view, const Placement& place
     part.material = primitive.material;
     const Material material = primitive.material == kNone ? Material{} : scene.materials[primitive.material];
     part.two_sided = material.double_sided;
-    part.alpha_mode = material.alpha_mode;
+    // Glass is opaque at some samples only, as what is blended.
+    const bool glass = material.transmission > 0.0f && material.alpha_mode == AlphaMode::kOpaque;
+    part.alpha_mode = glass ? AlphaMode::kBlend : material.alpha_mode;
 
     Path path(scene, view, placement, moments);
     part.moves = shutter_open && part.vertex_count > 0 && !path.stands_still();

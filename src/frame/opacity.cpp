@@ -109,7 +109,7 @@ OpacityClass opacity_class(const Frame& frame, std::uint32_t triangle) {
     const Part& part = frame.parts[frame.part_of[triangle]];
     if (part.material == kNone) return OpacityClass::kSolid;
     const bool glass = frame.scene->materials[part.material].transmission > 0.0f;
-    if (part.alpha_mode == AlphaMode::kOpaque) return glass ? OpacityClass::kMixed : OpacityClass::kSolid;
+    if (part.alpha_mode == AlphaMode::kOpaque) return OpacityClass::kSolid;
     if (!frame.textures || glass) return OpacityClass::kMixed;
     const OpacityClass* classes = frame.textures->opacity_classes(part.placement.mesh, part.placement.primitive);
     return classes ? classes[triangle - part.first_triangle] : OpacityClass::kMixed;
@@ -126,7 +126,7 @@ bool is_opaque_at(const Frame& frame, std::uint32_t triangle, const float baryce
     const float alpha = material.base_color.w * vertex_alpha(primitive, vertices, barycentrics) *
                         texture_alpha(frame, primitive, material.base_color_texture, vertices, barycentrics);
     if (part.alpha_mode == AlphaMode::kMask && !(alpha >= material.alpha_cutoff)) return false;
-    float opacity = part.alpha_mode == AlphaMode::kBlend ? alpha : 1.0f;
+    float opacity = material.alpha_mode == AlphaMode::kBlend ? alpha : 1.0f;
     if (material.transmission > 0.0f)
         opacity *= 1.0f - see_through(transmission(frame, material, primitive, vertices, barycentrics));
     else if (part.alpha_mode == AlphaMode::kMask)

@@ -19,6 +19,11 @@ double median(std::vector<double> values) {
     return n % 2 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
 }
 
+bool has_own_samples(const MethodSettings& settings) {
+    return settings.visibility == VisibilityMethod::kAccumulation ||
+           settings.visibility == VisibilityMethod::kInterleaved;
+}
+
 BenchRow counted_row(FrameWalk& walk, const std::string& method) {
     reset_peak_memory();
     const FrameWalk::Counts counts = walk.count(method, nullptr);
@@ -27,6 +32,7 @@ BenchRow counted_row(FrameWalk& walk, const std::string& method) {
     const MethodSettings settings = settings_of(method, {});
     row.conservative = settings.culling == "auto" || is_conservative(parse_culling(settings.culling));
     row.own_arithmetic = has_own_arithmetic(method);
+    row.own_samples = has_own_samples(settings);
     row.samples = walk.samples();
     row.tested = counts.cover.tested;
     row.covered = counts.cover.covered;
@@ -51,8 +57,7 @@ class Walks {
 
     FrameWalk& of(const std::string& method) {
         const MethodSettings settings = settings_of(method, options_.method);
-        const bool shared = settings.visibility == VisibilityMethod::kAccumulation ||
-                            settings.visibility == VisibilityMethod::kInterleaved;
+        const bool shared = has_own_samples(settings);
         Entry& entry = entries_[shared ? settings.visibility : VisibilityMethod::kStochastic];
         if (entry.walk) return *entry.walk;
         if (shared) entry.samples.emplace(make_samples(picture_.frame, picture_.samples.spp(), settings));

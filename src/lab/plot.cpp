@@ -7,7 +7,7 @@
 namespace pentaprism {
 namespace {
 
-constexpr double kWidth = 340, kHeight = 250, kLeft = 52, kRight = 14, kTop = 28, kBottom = 40;
+constexpr double kWidth = 340, kHeight = 290, kLeft = 52, kRight = 14, kTop = 28, kBottom = 40;
 
 class Canvas {
   public:

@@ -238,7 +238,8 @@ const BenchRow* best_of(const BenchScene& scene, const std::string& effect, cons
     const BenchRow* best = nullptr;
     for (const std::string& method : lookup.methods) {
         const BenchRow* row = lookup.row(scene.name, effect, method);
-        if (row && row->conservative && !row->own_arithmetic && (best == nullptr || better(*row, *best))) best = row;
+        const bool fair = row && row->conservative && !row->own_arithmetic && !row->own_samples;
+        if (fair && (best == nullptr || better(*row, *best))) best = row;
     }
     return best;
 }

@@ -25,6 +25,7 @@ Json to_json(const BenchRow& r) {
             {"backend", r.backend},
             {"conservative", r.conservative},
             {"own_arithmetic", r.own_arithmetic},
+            {"own_samples", r.own_samples},
             {"ste", r.ste()},
             {"samples", r.samples},
             {"tested", r.tested},

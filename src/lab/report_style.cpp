@@ -13,8 +13,8 @@ constexpr const char* kStyle = R"css(
 *{box-sizing:border-box}
 html{scroll-behavior:smooth}
 body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.5 system-ui,sans-serif}
-main{max-width:1180px;margin:0 auto;padding:0 24px 64px}
-header{max-width:1180px;margin:0 auto;padding:40px 24px 8px}
+main{max-width:1320px;margin:0 auto;padding:0 24px 64px}
+header{max-width:1320px;margin:0 auto;padding:40px 24px 8px}
 h1{font-size:2.1rem;line-height:1.15;margin:0 0 8px}
 h2{font-size:1.5rem;margin:56px 0 6px;padding-top:12px;border-top:1px solid var(--line)}
 h3{font-size:1.05rem;margin:28px 0 6px}
@@ -22,14 +22,14 @@ p{max-width:76ch;margin:8px 0}
 .soft{color:var(--soft)}
 .small{font-size:.86rem}
 nav{position:sticky;top:0;z-index:2;background:var(--paper);border-bottom:1px solid var(--line)}
-nav div{max-width:1180px;margin:0 auto;padding:8px 24px;display:flex;flex-wrap:wrap;gap:4px 18px;font-size:.9rem}
+nav div{max-width:1320px;margin:0 auto;padding:8px 24px;display:flex;flex-wrap:wrap;gap:4px 18px;font-size:.9rem}
 a{color:var(--accent);text-decoration:none}
 a:hover{text-decoration:underline}
 .cards{display:grid;grid-template-columns:repeat(auto-fit,minmax(220px,1fr));gap:12px;margin:20px 0}
 .card{background:var(--card);border:1px solid var(--line);border-radius:10px;padding:12px 16px}
 .card b{display:block;font-size:1.5rem;line-height:1.25}
 .card span{color:var(--soft);font-size:.88rem}
-.panels{display:grid;grid-template-columns:repeat(auto-fit,minmax(300px,1fr));gap:12px;margin:10px 0}
+.panels{display:grid;grid-template-columns:repeat(auto-fill,minmax(340px,1fr));gap:12px;margin:10px 0}
 .panel{background:var(--card);border:1px solid var(--line);border-radius:10px;padding:8px 8px 2px}
 svg{width:100%;height:auto;display:block}
 svg text{font:11px system-ui,sans-serif;fill:var(--soft)}
@@ -65,7 +65,7 @@ figcaption{font-size:.84rem;color:var(--soft);line-height:1.35;margin-top:4px}
 figcaption b{color:var(--ink)}
 img{width:100%;height:auto;display:block;border-radius:4px}
 .pictures{display:grid;grid-template-columns:repeat(auto-fill,minmax(260px,1fr));gap:14px;margin:12px 0}
-.maps{display:grid;grid-template-columns:repeat(auto-fill,minmax(420px,1fr));gap:16px;margin:12px 0}
+.maps{display:grid;grid-template-columns:repeat(auto-fill,minmax(400px,1fr));gap:16px;margin:12px 0}
 .maps img{image-rendering:pixelated}
 .pair{display:grid;grid-template-columns:1fr 1fr;gap:3px}
 .heat{height:12px;width:260px;border-radius:3px;border:1px solid var(--line)}
@@ -118,6 +118,8 @@ std::string report_style(int methods) {
         const int k = i - 1;
         style += fmt::format(".s{}{{--c:{}}}.s{} path{{stroke-dasharray:{}}}\n", i, kHues[k % hues], i,
                              kDashes[k / hues % static_cast<int>(std::size(kDashes))]);
+        constexpr const char* kBorders[] = {"solid", "dashed", "dotted", "double"};
+        style += fmt::format(".swatch.s{}{{border-top-style:{}}}\n", i, kBorders[k / hues % 4]);
     }
     std::string gradient;
     for (const std::string& colour : heat_scale(16)) gradient += "," + colour;

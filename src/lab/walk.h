@@ -30,8 +30,8 @@ bool has_own_arithmetic(const std::string& method);
 class FrameWalk {
   public:
     /// Frame and samples must outlive the walk, and the methods it is asked for must be ones that take such samples
-    /// (render/visibility.h, make_samples). Of a picture on which the bounding box alone would need more than
-    /// `most_tests` exact tests, only as many tiles are walked as need about so many, spread evenly; 0: no limit.
+    /// (render/visibility.h, make_samples). Of a picture on which the triangles' boxes hold more than
+    /// `most_tests` samples, only as many tiles are walked as hold about so many, spread evenly; 0: no limit.
     FrameWalk(const Frame& frame, const SampleTable& samples, const MethodSettings& settings, std::int64_t most_tests,
               KeepGoing keep_going);
 

@@ -10,16 +10,12 @@ done <<'END'
 --focus-range 1,2
 --max-foreground-blur 5
 --backend gl
---shading sample
---shading decoupled
 --sampler sobol
 --aov depth,albedo
 --aov ste
 --samples dump
 --resume
 --shard 1/4
---background sky.hdr
---background sky.exr
 END
 for command in merge view; do
     refuses 2 "$command is not built yet \(planned: see CHANGELOG\)" "$command" some thing --option
@@ -31,6 +27,7 @@ check "no file was made" test ! -e a.exr
 render_help=$(help_of render)
 for option in -r,--resolution -s,--spp --filter --crop --exposure --tonemap --background --camera --focal-length --sensor-width \
     --fstop --lens-radius --focus-distance --focus-object --focus-pixel --aperture-blades --aperture-rotation --aperture-ratio \
+    --aperture-roundness \
     --focus-range --max-foreground-blur --no-defocus --shutter --shutter-position --shutter-curve --rolling-shutter \
     --rolling-shutter-duration --motion-segments --no-motion-blur --frame -f,--frames --fps --animation --culling --visibility \
     --backend --shading --sampler --seed -t,--threads --aov --sharp --dataset --stats --samples --overwrite --skip-existing \

@@ -62,7 +62,7 @@ check "debug tells of stages" grep -q '^pentaprism: debug: frame 0: write ' err
 succeeds render builtin:cubes -o all.exr "${small[@]}" --filter tent --crop 8,40,4,30 --exposure -1 --background 0.1,0.2,0.3 \
     --sensor-width 36 --focal-length 50 --fstop 2 --focus-distance 5 --aperture-blades 6 --aperture-rotation 15 \
     --aperture-ratio 0.8 --shutter 1 --shutter-position start --motion-segments 2 --fps 30 --animation all --culling auto \
-    --visibility stochastic --backend cpu --shading pixel --seed 3 --shutter-curve box --rolling-shutter none
+    --visibility stochastic --backend cpu --shading pixel --seed 3 --shutter-curve box --rolling-shutter none --aperture-roundness 0.5
 succeeds render builtin:cubes -o none.exr "${small[@]}" --no-defocus --no-motion-blur
 refuses 2 'animation' render builtin:cubes -o a.png "${small[@]}" --animation nosuchclip
 refuses 2 'camera' render builtin:cubes -o a.png "${small[@]}" --camera nosuchcamera

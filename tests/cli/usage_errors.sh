@@ -54,6 +54,7 @@ done <<'END'
 --aperture-blades -3 --aperture-blades
 --aperture-rotation x --aperture-rotation
 --aperture-ratio 0 --aperture-ratio
+--aperture-roundness 1.1 --aperture-roundness: 1.1 is not from 0 to 1
 --shutter -0.5 --shutter
 --shutter 1e999 --shutter
 --shutter-position middle --shutter-position

@@ -323,7 +323,14 @@ Bound corner_bound() {
             with(CornerMistake::kNone),
             {{"the footprint's width is dropped", with(CornerMistake::kNoFootprintWidth)},
              {"a vertex is forgotten", with(CornerMistake::kVertexForgotten)},
-             {"the circle of confusion has lost its sign", with(CornerMistake::kUnsignedCoc)}}};
+             {"the circle of confusion has lost its sign", with(CornerMistake::kUnsignedCoc)},
+             {"u stands for v", [](const Asked& q) { return bilinear_keeps(q.y, q.u, q.s, CornerMistake::kNone); }},
+             {"the middle of the shutter stands for all",
+              [](const Asked& q) { return bilinear_keeps(q.x, q.u, 0.5, CornerMistake::kNone); }},
+             {"the first segment stands for all", [](const Asked& q) {
+                  const double first = q.s + static_cast<double>(q.hard->local.segment);
+                  return bilinear_keeps(q.x, q.u, first, CornerMistake::kNone);
+              }}}};
 }
 
 Bound line_bound() {

@@ -162,6 +162,7 @@ TEST(Bench, APartOfTheTilesIsAlwaysTheSameAndNeedsAboutTheTestsAskedFor) {
     RenderSettings settings = small_plan().settings;
     settings.image.width = 512, settings.image.height = 384;
     settings.camera.fstop = 2.0;
+    settings.shutter.motion_blur = false;  // every sample of a box is tested: there are no pieces of paths
     const Scene scene = make_builtin_scene("cubes");
     const PosedPicture picture = pose_picture(scene, settings, 24);
     const KeepGoing go = [](const std::string&) { return true; };

@@ -261,10 +261,10 @@ TEST_F(GltfReader, ThePhysicalCameraExtensionComesBeforeExtras) {
 
 TEST_F(GltfReader, OnlyRequiredExtensionsAreRefused) {
     file.triangle();
-    file.json["extensionsUsed"] = {"KHR_materials_sheen"};
-    EXPECT_TRUE(mentions(load().warnings, "no sheen"));
-    file.json["extensionsRequired"] = {"KHR_materials_sheen"};
-    EXPECT_EQ(refusal(), "test.gltf: requires the glTF extension KHR_materials_sheen, which is not supported");
+    file.json["extensionsUsed"] = {"KHR_materials_iridescence"};
+    EXPECT_TRUE(mentions(load().warnings, "show no colours"));
+    file.json["extensionsRequired"] = {"KHR_materials_iridescence"};
+    EXPECT_EQ(refusal(), "test.gltf: requires the glTF extension KHR_materials_iridescence, which is not supported");
 }
 
 TEST_F(GltfReader, ReadsPastTheEndAreRefusedWithTheByte) {

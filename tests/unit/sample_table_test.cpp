@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <numbers>
 #include <set>
@@ -283,6 +284,55 @@ bool inside_polygon(double u, double v, int blades, double rotation) {
         if (u * std::cos(middle) + v * std::sin(middle) > std::cos(std::numbers::pi / blades) + 1e-6) return false;
     }
     return true;
+}
+
+TEST(Aperture, RoundedBladesAreFilledEvenlyUpToTheirOutline) {
+    constexpr int kGrid = 400;
+    for (const int blades : {3, 5, 8})
+        for (const double k : {0.0, 1e-6, 0.3, 0.8, 1.0}) {
+            Lens lens;
+            lens.blades = blades;
+            lens.rotation_deg = 17.0;
+            lens.roundness = k;
+            const double half = std::numbers::pi / blades, c = std::cos(half);
+            const auto outline = [&](double u, double v) {
+                double a = std::atan2(v, u) - 17.0 * std::numbers::pi / 180.0;
+                a -= 2 * half * std::floor(a / (2 * half));
+                return (1 - k) * c / std::cos(a - half) + k;
+            };
+            // Of an even density the part within q times the outline is q^2, and the means of u^2 and v^2 are the
+            // outline's: numerically, half the mean of R^4 over that of R^2.
+            double inner = 0, square = 0, fourth = 0, second = 0;
+            for (int i = 0; i < kGrid; ++i)
+                for (int j = 0; j < kGrid; ++j) {
+                    const glm::dvec2 p = aperture_point(lens, (i + 0.5) / kGrid, (j + 0.5) / kGrid);
+                    const double r = std::hypot(p.x, p.y), most = outline(p.x, p.y);
+                    ASSERT_LE(r, most + 1e-9);
+                    inner += r < 0.5 * most;
+                    square += r * r;
+                }
+            for (int i = 0; i < 100000; ++i) {
+                const double a = 2 * std::numbers::pi * (i + 0.5) / 100000, most = outline(std::cos(a), std::sin(a));
+                second += most * most;
+                fourth += std::pow(most, 4);
+            }
+            EXPECT_NEAR(inner / (kGrid * kGrid), 0.25, 2e-3) << blades << " blades, roundness " << k;
+            EXPECT_NEAR(square / (kGrid * kGrid), 0.5 * fourth / second, 2e-3) << blades << " blades, roundness " << k;
+        }
+}
+
+TEST(Aperture, ARoundnessNearNothingMovesNoSampleFarAndOneIsTheDisk) {
+    Lens straight, nearly, round, disk;
+    straight.blades = nearly.blades = round.blades = 7;
+    nearly.roundness = 1e-9;
+    round.roundness = 1.0;
+    for (int i = 0; i < 1000; ++i) {
+        const double p = (i + 0.5) / 1000, q = std::fmod(0.618034 * i, 1.0);
+        const glm::dvec2 a = aperture_point(straight, p, q), b = aperture_point(nearly, p, q),
+                         c = aperture_point(round, p, q), d = aperture_point(disk, p, q);
+        EXPECT_NEAR(glm::length(a - b), 0.0, 1e-7);
+        EXPECT_NEAR(glm::length(c - d), 0.0, 1e-12);
+    }
 }
 
 TEST(SampleTable, KeepsEverySampleInItsPixelOnTheLensAndBeforeTheShutterCloses) {

@@ -34,10 +34,11 @@ void add_sun(Scene& scene, float lux, double angle = 0.0) {
     add_light(scene, light, transform);
 }
 
-std::vector<float> draw(const Scene& scene, const RenderSettings& settings, int tile_size = 32) {
+std::vector<float> draw(const Scene& scene, const RenderSettings& settings, int tile_size = 32,
+                        const ShadingOptions& options = {}) {
     const Frame frame = frame_of(scene, settings);
     const SampleTable table(settings.image.spp, 0, frame.view.lens, Grouping::kBoth);
-    const ShadingScene shading(frame);
+    const ShadingScene shading(frame, options);
     Film film({0, 0, kSize, kSize, kSize, settings.image.spp, settings.image.filter, glm::vec3(0.0f), 0.0});
     TileShader shader;
     Hits hits;
@@ -195,10 +196,98 @@ TEST(Shade, TheTileSizeDoesNotChangeABit) {
     settings.camera.lens_radius = 0.1;
     settings.camera.focus_distance = 3.0;
     settings.shutter.motion_segments = 2;
-    const std::vector<float> reference = draw(scene, settings, 32);
-    for (const int size : {8, 16}) {
-        const std::vector<float> other = draw(scene, settings, size);
-        EXPECT_EQ(std::memcmp(reference.data(), other.data(), reference.size() * sizeof(float)), 0) << size;
+    ShadingOptions options;
+    options.spp = settings.image.spp;
+    options.environment = std::make_shared<const Environment>(Environment::sky());
+    for (const ShadingRate rate : {ShadingRate::kPixel, ShadingRate::kDecoupled, ShadingRate::kSample}) {
+        options.rate = rate;
+        const std::vector<float> reference = draw(scene, settings, 32, options);
+        for (const int size : {8, 16}) {
+            const std::vector<float> other = draw(scene, settings, size, options);
+            EXPECT_EQ(std::memcmp(reference.data(), other.data(), reference.size() * sizeof(float)), 0)
+                << size << ' ' << static_cast<int>(rate);
+        }
+    }
+}
+
+// Motion and lens blur a stripe pattern; the few evaluations of cells must show what an evaluation for each sample
+// shows.
+TEST(Shade, CellsShowWhatSamplesShowWithFewerEvaluations) {
+    Scene scene = scene_with_camera();
+    Image stripes{"stripes", 16, 16, {}};
+    for (int i = 0; i < 256; ++i) {
+        const std::uint8_t code = i % 16 < 8 ? 255 : 30;
+        stripes.texels.insert(stripes.texels.end(), {code, code, code, 255});
+    }
+    scene.images.push_back(stripes);
+    scene.materials = {matte(glm::vec3(1.0f))};
+    scene.materials[0].base_color_texture.image = 0;
+    const Index moving = add_mesh(scene, {square(3.0f, -2.0f, 0)});
+    add_sun(scene, 3.0f, 0.4);
+    Channel path;
+    path.node = moving;
+    path.path = ChannelPath::kTranslation;
+    path.times = {-1.0f, 1.0f};
+    path.values = {-36.0f, 0.0f, 0.0f, 36.0f, 0.0f, 0.0f};
+    scene.animations.push_back({"move", {path}, 1.0});
+    RenderSettings settings = settings_of(64);
+    settings.camera.lens_radius = 0.1;
+    settings.camera.focus_distance = 4.0;
+    ShadingOptions options;
+    options.spp = settings.image.spp;
+    options.rate = ShadingRate::kSample;
+    options.texture_filter = TextureFilter::kPixel;
+    const std::vector<float> samples = draw(scene, settings, 32, options);
+    options.rate = ShadingRate::kDecoupled;
+    options.texture_filter = TextureFilter::kFull;
+    const std::vector<float> cells = draw(scene, settings, 32, options);
+    double worst = 0.0, sum = 0.0;
+    for (std::size_t i = 0; i < cells.size(); i += 4) {
+        const double difference = std::abs(cells[i] - samples[i]);
+        worst = std::max(worst, difference);
+        sum += difference / (kSize * kSize);
+    }
+    EXPECT_LT(worst, 0.1);
+    EXPECT_LT(sum, 0.02);
+
+    const Frame frame = frame_of(scene, settings);
+    const SampleTable table(settings.image.spp, 0, frame.view.lens, Grouping::kBoth);
+    const Tile tile{0, 0, 32, 32};
+    Hits hits;
+    find_hits(frame, table, tile, hits);
+    TileShade shade;
+    EXPECT_LT(TileShader().shade(ShadingScene(frame, options), table, tile, hits, shade), 600);  // 1024 pixels
+}
+
+// Glass in front of a white wall: what passes and what is thrown back add up.
+TEST(Shade, GlassShowsWhatIsBehindAndStillShines) {
+    Scene scene = scene_with_camera();
+    scene.materials = {matte(glm::vec3(0.0f)), matte(glm::vec3(1.0f))};
+    scene.materials[0].transmission = 1.0f;
+    scene.materials[1].unlit = true;
+    add_mesh(scene, {square(3.0f, -2.0f, 0), square(9.0f, -4.0f, 1)});
+    add_sun(scene, 1.0f);
+    const std::vector<float> picture = draw(scene, settings_of(64));
+    double mean = 0.0, least = 1.0;
+    for (int y = 8; y < 20; ++y)
+        for (int x = 8; x < 20; ++x) {
+            mean += pixel(picture, x, y).x / 144.0;
+            least = std::min<double>(least, pixel(picture, x, y).x);
+        }
+    EXPECT_NEAR(mean, 0.875, 0.04);
+    EXPECT_GT(least, 0.8);
+}
+
+TEST(Shade, ANormalMapTurnsTheSurface) {
+    for (const int code : {128 - 90, 128, 128 + 90}) {
+        Scene scene = scene_with_camera();
+        scene.images.push_back({"normal", 1, 1, {static_cast<std::uint8_t>(code), 128, 218, 255}});
+        scene.materials = {matte(glm::vec3(1.0f))};
+        scene.materials[0].normal_texture.image = 0;
+        add_mesh(scene, {square(3.0f, -2.0f, 0)});
+        add_sun(scene, std::numbers::pi_v<float>, 0.6);  // from the right
+        const float turn = std::atan2(static_cast<float>(code - 128) / 127.5f, 90.0f / 127.5f);
+        EXPECT_NEAR(pixel(draw(scene, settings_of(4)), 32, 32).x, std::max(0.0f, std::cos(0.6f - turn)), 0.06f) << code;
     }
 }
 

@@ -406,7 +406,8 @@ void add_camera_and_light(Assembly& scene) {
     scene.animate_rotation(camera, 13, [=](double t) { return looking(eye(t), target(t)); });
     scene.add_sun("sun", {0.75, 0.70, 0.55}, {1.0f, 0.90f, 0.74f}, 4.6);
     scene.add_sun("sky light", {-0.2, 1.0, 0.15}, {0.55f, 0.72f, 1.0f}, 1.5);
-    scene.add_sun("bounce", {0.5, -0.3, 0.8}, {1.0f, 0.92f, 0.8f}, 0.5);
+    // What road and meadow throw back reaches under the roof of the grandstand.
+    scene.add_sun("bounce", {0.35, 0.15, 0.93}, {1.0f, 0.93f, 0.82f}, 1.5);
 }
 
 }  // namespace
