@@ -19,9 +19,11 @@ LocalSample local_sample(const SamplePoint& sample, int px, int py) {
             half - (static_cast<float>(py % kCellSize) + sample.y), sample.u, sample.v, sample.t};
 }
 
-LocalTriangle localize(const Frame& frame, std::uint32_t triangle, int segment, const CellCentre& centre) {
+LocalTriangle localize(const Frame& frame, std::uint32_t triangle, int segment, const CellCentre& centre, float scale) {
     const Part& part = frame.parts[frame.part_of[triangle]];
-    const MovingTriangle m = moving_triangle(frame, triangle, segment);
+    MovingTriangle m = moving_triangle(frame, triangle, segment);
+    for (int i = 0; i < 3; ++i)
+        for (int end = 0; end < 2; ++end) m.x[i][end] *= scale, m.y[i][end] *= scale, m.c[i][end] *= scale;
     LocalTriangle local;
     const double centre_x = centre.x, centre_y = centre.y;
     for (int i = 0; i < 3; ++i) {

@@ -38,7 +38,9 @@ struct LocalSample {
 };
 LocalSample local_sample(const SamplePoint& sample, int px, int py);
 
-LocalTriangle localize(const Frame& frame, std::uint32_t triangle, int segment, const CellCentre& centre);
+/// `scale`, a power of two: pixels a unit of the frame's x, y and c, for pictures of one frame in several sizes.
+LocalTriangle localize(const Frame& frame, std::uint32_t triangle, int segment, const CellCentre& centre,
+                       float scale = 1.0f);
 
 /// Closed ranges of the lens and of s, the part of the shutter as fractions of the triangle's segment.
 struct SegmentDomain {

@@ -28,7 +28,8 @@ struct TileWork {
     std::span<const std::uint32_t> list;        ///< those of this tile, in submission order
     Tile tile;
     CoverMap* map =
-        nullptr;  ///< of the whole picture, added to; nullptr: not recorded. cover_vectors() leaves it alone
+        nullptr;         ///< of the whole picture, added to; nullptr: not recorded. cover_vectors() leaves it alone
+    float scale = 1.0f;  ///< as localize() takes it; 1 but for shadow maps
 };
 
 /// What a tile cost. `tested`: exact 5D tests; `covered`: those that accepted (before depth and alpha). The others are

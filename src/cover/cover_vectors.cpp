@@ -67,7 +67,7 @@ CoverJobs choose_kind(const LocalTriangle& T, Facing facing) {
 }
 
 void cover_triangle(TileState& state, const BinnedTriangle& binned, float nearest, const CullTest& camera_plane_test) {
-    const LocalTriangle T = localize(state.work.frame, binned.triangle, binned.segment, state.centre);
+    const LocalTriangle T = localize(state.work.frame, binned.triangle, binned.segment, state.centre, state.work.scale);
     const float ratio = static_cast<float>(state.work.frame.view.lens.ratio);
     std::uint64_t blocks = blocks_of(binned, state.work.tile) & state.tile_blocks;
     std::uint64_t masks[kMaxStrata];

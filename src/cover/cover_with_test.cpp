@@ -75,7 +75,7 @@ class Walk {
     }
 
     void cover(const BinnedTriangle& binned) {
-        triangle_ = localize(work_.frame, binned.triangle, binned.segment, centre_);
+        triangle_ = localize(work_.frame, binned.triangle, binned.segment, centre_, work_.scale);
         for (Step& step : steps_)
             if (step.test->begin != nullptr && !step.test->begin(triangle_, picture_, step.setup)) return;
         const Tile& tile = work_.tile;

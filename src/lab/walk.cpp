@@ -177,7 +177,7 @@ double FrameWalk::for_each_tile(const std::string& what, const TileWorkBody& bod
         const auto hits = buffers_.lease();
         body(i, *hits);
         const std::unique_lock<std::mutex> lock(one_at_a_time, std::try_to_lock);
-        if (lock && !keep_going_(what)) stopped = true;
+        if (lock && !stopped && !keep_going_(what)) stopped = true;
     });
     if (stopped) throw Error(ErrorKind::kRender, "interrupted");
     return milliseconds_since(start) / share_;

@@ -56,11 +56,9 @@ struct ShadowMap::Level {
     explicit Level(int pages) : pages_across(pages), pages(std::make_unique<std::atomic<Page*>[]>(pages * pages)) {}
     ~Level() {
         for (int i = 0; i < pages_across * pages_across; ++i) delete pages[i].load();
-        delete frame.load();
     }
     int pages_across;
     std::unique_ptr<std::atomic<Page*>[]> pages;
-    std::atomic<const Frame*> frame{nullptr};
 };
 
 // A triangle in level-0 units: x, y, w and depth of each corner at the start of the segment, and their change.
@@ -159,15 +157,6 @@ ShadowMap::Level& ShadowMap::level(int exponent) const {
     return place.compare_exchange_strong(expected, made.get()) ? *made.release() : *expected;
 }
 
-// The triangles in texels of that level: a power of two, so the numbers are the same.
-const Frame& ShadowMap::frame_of(Level& level, int exponent) const {
-    if (const Frame* frame = level.frame.load(std::memory_order_acquire)) return *frame;
-    auto made = std::make_unique<Frame>(frame_);
-    const float scale = std::ldexp(1.0f, -exponent);
-    for (glm::vec4& p : made->points) p.x *= scale, p.y *= scale;
-    return *publish<Frame>(level.frame, std::move(made));
-}
-
 ShadowMap::Cell& ShadowMap::cell(Level& level, int cx, int cy) const {
     std::atomic<Page*>& place = level.pages[cy / kPageCells * level.pages_across + cx / kPageCells];
     Page* page = place.load(std::memory_order_acquire);
@@ -236,8 +225,9 @@ std::unique_ptr<float[]> ShadowMap::render(int exponent, int cx, int cy, const L
     scratch.hits.reset(kSamples);
     if (!scratch.binned.empty()) {
         CoverCounts counts;
-        const Frame& frame = frame_of(level(exponent), exponent);
-        cover_vectors(TileWork{frame, table_, scratch.binned, scratch.order, tile}, scratch.hits, counts);
+        // In texels of the level: a power of two, so the numbers are the same.
+        cover_vectors(TileWork{frame_, table_, scratch.binned, scratch.order, tile, nullptr, static_cast<float>(scale)},
+                      scratch.hits, counts);
     }
     auto out = std::make_unique<float[]>(scratch.hits.depth.size());
     std::copy(scratch.hits.depth.begin(), scratch.hits.depth.end(), out.get());

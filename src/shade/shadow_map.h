@@ -74,7 +74,6 @@ class ShadowMap {
 
     void bound_triangles();
     Level& level(int exponent) const;
-    const Frame& frame_of(Level& level, int exponent) const;
     Cell& cell(Level& level, int cx, int cy) const;
     const List& list(int exponent, int cx, int cy) const;
     const float* depths(int exponent, int cx, int cy) const;
