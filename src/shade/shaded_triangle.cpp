@@ -16,6 +16,8 @@ namespace {
 // Cosine of face and light below which points are lifted to the smooth surface, little by little.
 constexpr float kGrazing = 0.1f;
 
+constexpr float kNegligible = 1.0f / 512.0f;
+
 template <typename T>
 T interpolate(const std::vector<T>& values, const std::array<std::uint32_t, 3>& vertices, const glm::vec3& b) {
     return b.x * values[vertices[0]] + b.y * values[vertices[1]] + b.z * values[vertices[2]];
@@ -347,6 +349,16 @@ void ShadedTriangle::shade(const glm::vec3& b, bool front, const ShadingCell& ce
     }
     out.rest = scale * color;
     out.position = position;
+
+    // A light that adds less than half a code of 8 bits to what the point shows needs no shadow.
+    const auto brightness = [](const glm::vec3& c) { return c.x + c.y + c.z; };
+    float total = brightness(out.rest);
+    for (const LitColor::Share& share : out.shadowed) total += brightness(share.color);
+    std::erase_if(out.shadowed, [&](const LitColor::Share& share) {
+        if (brightness(share.color) > kNegligible * total) return false;
+        out.rest += share.color;
+        return true;
+    });
 }
 
 }  // namespace pentaprism
