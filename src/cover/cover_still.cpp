@@ -126,6 +126,7 @@ void write_hits(const StillTile& tile, Hits& hits) {
 void set_outside(StillTile& tile, float depth) {
     const Tile& t = tile.work.tile;
     const int left = t.cell_x() * kCellSize, top = t.cell_y() * kCellSize;
+    if (t.x1 - t.x0 == kCellSize && t.y1 - t.y0 == kCellSize) return;
     for (int pixel = 0; pixel < StillTile::kPixels; ++pixel) {
         const int block = pixel / kLanes, lane = pixel % kLanes;
         const int px = left + block % kCellBlocks * kBlockSize + lane % kBlockSize;
