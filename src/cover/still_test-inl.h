@@ -20,24 +20,25 @@ namespace HWY_NAMESPACE {
 
 // The tile's samples and hits, pixel by pixel as in PixelSamples.
 struct StillTile {
-    StillTile(const TileWork& w, const PixelSamples& s)
+    StillTile(const TileWork& w, const PixelSamples& s, Hits& hits)
         : work(w),
           samples(s),
           centre(cell_centre(w.frame.view, w.tile.cell_x(), w.tile.cell_y())),
           spp(static_cast<std::size_t>(w.samples.spp())),
-          depth(s.x.size(), INFINITY),
-          triangle(s.x.size(), kNoTriangle),
-          farthest(kPixels, INFINITY) {}
+          depth(hits.depth.data()),
+          triangle(hits.triangle.data()) {
+        std::fill_n(farthest, kPixels, INFINITY);
+    }
 
     static constexpr int kPixels = kBlocksPerCell * kLanes;
     const TileWork& work;
     PixelSamples samples;
     CellCentre centre;
     std::size_t spp;
-    AlignedVector<float> depth;  // -infinity outside the tile: nothing is nearer
-    AlignedVector<std::uint32_t> triangle;
-    AlignedVector<float> farthest;   // by pixel: largest depth stored so far
-    float tile_farthest = INFINITY;  // no smaller than any of `farthest`
+    float* depth;  // of the tile's Hits; -infinity outside the tile: nothing is nearer
+    std::uint32_t* triangle;
+    HWY_ALIGN float farthest[kPixels];  // by pixel: largest depth stored so far
+    float tile_farthest = INFINITY;     // no smaller than any of `farthest`
     std::int64_t tested = 0, covered = 0;
 };
 
