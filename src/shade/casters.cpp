@@ -97,21 +97,76 @@ bool is_usable(const MovingTriangle& m) {
     return usable;
 }
 
-void bound_triangle(const Frame& frame, std::uint32_t triangle, std::vector<Casters::Box>& out) {
-    if (opacity_class(frame, triangle) == OpacityClass::kClear) return;
-    const Part& part = frame.parts[frame.part_of[triangle]];
+void take(const ScreenBox& box, std::uint32_t triangle, int segment, bool perspective, std::vector<Casters::Box>& out) {
+    if (box.empty()) return;
+    if (perspective &&
+        (box.x0 > kWidestTangent || box.x1 < -kWidestTangent || box.y0 > kWidestTangent || box.y1 < -kWidestTangent))
+        return;
+    out.push_back({outward(box.x0, -INFINITY), outward(box.x1, INFINITY), outward(box.y0, -INFINITY),
+                   outward(box.y1, INFINITY), static_cast<float>(box.nearest_w), triangle,
+                   static_cast<std::uint16_t>(segment)});
+}
+
+// Points of a part on the light's picture, for boxes of triangles that are wholly before the light: with the lens
+// closed a moving triangle lies between its six ends as they are seen. A box of its own for each triangle, as
+// screen_bounds() makes it, costs five times as much.
+class SeenPoints {
+  public:
+    SeenPoints(const Frame& frame, const Part& part) : frame_(frame), part_(part) {
+        const std::size_t count = part.vertex_count * static_cast<std::size_t>(part.moves ? part.segments + 1 : 1);
+        seen_.resize(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            const glm::vec4& p = frame.points[part.first_point + i];
+            const float inverse = 1.0f / p.z, depth = frame.view.perspective ? p.z : frame.depths[part.first_point + i];
+            seen_[i] = {p.x * inverse, p.y * inverse, p.z};
+            simple_ = simple_ && p.z >= kNear && std::abs(p.x) <= kLargest && std::abs(p.y) <= kLargest &&
+                      std::abs(depth) <= kLargest;
+        }
+    }
+    /// Whether box() may be asked.
+    bool simple() const { return simple_; }
+
+    ScreenBox box(std::uint32_t triangle, int segment) const {
+        float x0 = INFINITY, x1 = -INFINITY, y0 = INFINITY, y1 = -INFINITY, nearest = INFINITY, farthest = 0.0f;
+        for (int k = 0; k < 3; ++k) {
+            std::size_t at = frame_.corners[3 * std::size_t{triangle} + k] - part_.first_point +
+                             static_cast<std::size_t>(segment) * part_.vertex_count;
+            for (int end = 0; end < (part_.moves ? 2 : 1); ++end, at += part_.vertex_count) {
+                const glm::vec3& p = seen_[at];
+                x0 = std::min(x0, p.x), x1 = std::max(x1, p.x);
+                y0 = std::min(y0, p.y), y1 = std::max(y1, p.y);
+                nearest = std::min(nearest, p.z), farthest = std::max(farthest, p.z);
+            }
+        }
+        // As in screen_bounds(), where |x| <= w * reach; a quarter more for the divisions here.
+        constexpr float kUnitRoundoff = 1.0f / 16777216.0f;
+        const float slack = 20.0f * kUnitRoundoff * farthest / nearest;
+        const float slack_x = slack * (32.0f + 2.0f * std::max(std::abs(x0), std::abs(x1)));
+        const float slack_y = slack * (32.0f + 2.0f * std::max(std::abs(y0), std::abs(y1)));
+        return {x0 - slack_x, x1 + slack_x, y0 - slack_y, y1 + slack_y, nearest - 2.0f * kUnitRoundoff * farthest};
+    }
+
+  private:
+    const Frame& frame_;
+    const Part& part_;
+    std::vector<glm::vec3> seen_;  // x, y; w
+    bool simple_ = true;
+};
+
+void bound_part(const Frame& frame, const Part& part, std::vector<Casters::Box>& out) {
+    const SeenPoints seen(frame, part);
     const bool perspective = frame.view.perspective;
-    for (int segment = 0; segment < (part.moves ? part.segments : 1); ++segment) {
-        const MovingTriangle m = moving_triangle(frame, triangle, segment);
-        if (!is_usable(m)) continue;
-        const ScreenBox box = screen_bounds(m, frame.view.w_near(), 1.0);
-        if (box.empty()) continue;
-        if (perspective && (box.x0 > kWidestTangent || box.x1 < -kWidestTangent || box.y0 > kWidestTangent ||
-                            box.y1 < -kWidestTangent))
-            continue;
-        out.push_back({outward(box.x0, -INFINITY), outward(box.x1, INFINITY), outward(box.y0, -INFINITY),
-                       outward(box.y1, INFINITY), static_cast<float>(box.nearest_w), triangle,
-                       static_cast<std::uint16_t>(segment)});
+    for (std::uint32_t triangle = part.first_triangle; triangle < part.first_triangle + part.triangle_count;
+         ++triangle) {
+        if (opacity_class(frame, triangle) == OpacityClass::kClear) continue;
+        for (int segment = 0; segment < (part.moves ? part.segments : 1); ++segment) {
+            if (seen.simple()) {
+                take(seen.box(triangle, segment), triangle, segment, perspective, out);
+                continue;
+            }
+            const MovingTriangle m = moving_triangle(frame, triangle, segment);
+            if (is_usable(m)) take(screen_bounds(m, frame.view.w_near(), 1.0), triangle, segment, perspective, out);
+        }
     }
 }
 
@@ -122,23 +177,20 @@ Casters make_casters(const WorldMotion& world, const Frame& frame, const LightVi
     std::vector<std::uint32_t> taken;
     casters.frame = place_parts(world, frame, view, width, taken);
     Frame& seen = casters.frame;
+    std::vector<std::vector<Casters::Box>> bounded(taken.size());
     for_ranges(parallel, taken.size(), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
+        for (std::size_t i = begin; i < end; ++i) {
             fill_part(world, world.parts[taken[i]], view, static_cast<std::uint32_t>(i), seen);
-    });
-
-    constexpr std::size_t kChunk = 4096;
-    const std::size_t count = seen.triangle_count(), chunks = (count + kChunk - 1) / kChunk;
-    std::vector<std::vector<Casters::Box>> bounded(chunks);
-    for_ranges(parallel, chunks, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t chunk = begin; chunk < end; ++chunk)
-            for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i)
-                bound_triangle(seen, static_cast<std::uint32_t>(i), bounded[chunk]);
+            bound_part(seen, seen.parts[i], bounded[i]);
+        }
     });
     std::size_t boxes = 0;
-    for (const auto& chunk : bounded) boxes += chunk.size();
+    for (const auto& part : bounded) boxes += part.size();
     casters.boxes.reserve(boxes);
-    for (const auto& chunk : bounded) casters.boxes.insert(casters.boxes.end(), chunk.begin(), chunk.end());
+    for (auto& part : bounded) {
+        casters.boxes.insert(casters.boxes.end(), part.begin(), part.end());
+        part = {};
+    }
     for (const Casters::Box& box : casters.boxes)
         casters.extent =
             std::max({casters.extent, std::abs(box.x0), std::abs(box.x1), std::abs(box.y0), std::abs(box.y1)});

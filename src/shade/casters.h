@@ -18,7 +18,7 @@ struct LightView {
 };
 
 /// A perspective view ends at this tangent, right, left, up and down: a face of a cube (1) with room around it.
-inline constexpr float kWidestTangent = 2.0f;
+inline constexpr float kWidestTangent = 1.5f;
 
 struct Casters {
     /// One motion segment of one triangle in the light's view: metres or tangents, y up.

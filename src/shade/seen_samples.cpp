@@ -57,9 +57,8 @@ void project(const SeenSamples::Batch& batch) {
         const Vec tau = hn::Sub(along, hn::Set(f, T.segment));
         Vec x[3], y[3];
         for (int k = 0; k < 3; ++k) {
-            const auto moved = [&](float q, float change) HWY_ATTR {
-                return plus_product(hn::Set(f, q), tau, hn::Set(f, change));
-            };
+            const auto moved = [&](float q, float change)
+                                   HWY_ATTR { return plus_product(hn::Set(f, q), tau, hn::Set(f, change)); };
             const Vec w = moved(T.qw[k], T.dw[k]), c = moved(T.qc[k], T.dc[k]);
             x[k] = hn::Sub(plus_product(moved(T.qx[k], T.dx[k]), u, c), hn::Mul(hx, w));
             y[k] = hn::Sub(plus_product(moved(T.qy[k], T.dy[k]), v, c), hn::Mul(hy, w));
@@ -127,8 +126,8 @@ void find_cells(const SeenSamples::Batch& batch) {
                                 hn::Set(f, corner[2]));
         };
         const Vec w = blend(T.w), x = hn::Div(blend(T.x), w), y = hn::Div(blend(T.y), w);
-        const Mask usable = hn::And(hn::Ge(w, hn::Set(f, T.w_near)),
-                                    hn::Lt(hn::Max(hn::Abs(x), hn::Abs(y)), hn::Set(f, 16384.0f)));
+        const Mask usable =
+            hn::And(hn::Ge(w, hn::Set(f, T.w_near)), hn::Lt(hn::Max(hn::Abs(x), hn::Abs(y)), hn::Set(f, 16384.0f)));
         const Vec motion_w = blend(T.motion_w);
         const Vec vx = hn::Div(hn::Sub(blend(T.motion_x), hn::Mul(motion_w, x)), w);
         const Vec vy = hn::Div(hn::Sub(blend(T.motion_y), hn::Mul(motion_w, y)), w);
@@ -146,7 +145,8 @@ void find_cells(const SeenSamples::Batch& batch) {
             across = product_difference(c, y, s, x);
         }
         const IVec half = hn::Set(d, 1 << 15);
-        const IVec column = hn::Add(floor_of(f, along, longer), half), row = hn::Add(floor_of(f, across, shorter), half);
+        const IVec column = hn::Add(floor_of(f, along, longer), half),
+                   row = hn::Add(floor_of(f, across, shorter), half);
         const IVec side = hn::BitCast(d, hn::Load(U(), batch.kind + first));
         const IVec kind = hn::Or(hn::Or(side, hn::ShiftLeft<1>(shorter)),
                                  hn::Or(hn::ShiftLeft<4>(longer), hn::ShiftLeft<7>(direction)));
@@ -201,7 +201,8 @@ const CellDirections& cell_directions() {
     static const CellDirections made = [] {
         CellDirections all;
         for (int i = 0; i < CellDirections::kCount; ++i) {
-            const double angle = std::numbers::pi * i / CellDirections::kCount, border = angle + 0.5 * std::numbers::pi / CellDirections::kCount;
+            const double angle = std::numbers::pi * i / CellDirections::kCount,
+                         border = angle + 0.5 * std::numbers::pi / CellDirections::kCount;
             all.cosine[i] = static_cast<float>(std::cos(angle));
             all.sine[i] = static_cast<float>(std::sin(angle));
             all.border_cosine[i] = static_cast<float>(std::cos(border));
@@ -253,8 +254,9 @@ void SeenSamples::see(std::uint32_t triangle, std::span<const std::uint32_t> ind
     kind_.resize(padded);
     place_.resize(padded);
     for (std::size_t first = 0; first < padded; first += kLanes) {
-        Batch batch{&indices_[first], samples_,     nullptr, cells, {&b_[0][first], &b_[1][first], &b_[2][first]},
-                    &t_[first],       &kind_[first], &place_[first]};
+        Batch batch{
+            &indices_[first], samples_,      nullptr,       cells, {&b_[0][first], &b_[1][first], &b_[2][first]},
+            &t_[first],       &kind_[first], &place_[first]};
         std::uint64_t done = 0;  // segments: at most 64 (camera/settings.cpp)
         for (int lane = 0; lane < (segments == 1 ? 1 : kLanes); ++lane) {
             const std::uint32_t index = indices_[first + lane];

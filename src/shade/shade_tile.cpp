@@ -40,8 +40,7 @@ class FewPoints {
         points_[count_++] = b;
     }
     void write(int quarter, ShadowPoint& out) const {
-        for (int i = 0; i < kLookups && count_ > 0; ++i)
-            write_lane(points_[i % count_], kLookups * quarter + i, out);
+        for (int i = 0; i < kLookups && count_ > 0; ++i) write_lane(points_[i % count_], kLookups * quarter + i, out);
     }
 
   private:

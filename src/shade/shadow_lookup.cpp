@@ -90,10 +90,10 @@ class Lookup {
     }
 
     HWY_INLINE std::uint32_t lit() {
-        float farthest = 0.0f;
+        float reach = 0.0f, depth = 0.0f;
         for (int first = 0; first < kAll; first += kWidth)
-            if (!find_ways(first, farthest)) return 0xffff;
-        if (!choose_level(farthest)) return 0xffff;
+            if (!find_ways(first, reach, depth)) return 0xffff;
+        if (!choose_level(reach, depth)) return 0xffff;
         std::uint32_t lit = 0;
         for (int first = 0; first < kAll; first += kWidth) lit |= compare(first) << first;
         return lit;
@@ -103,7 +103,8 @@ class Lookup {
     Place offset(F f) const { return {hn::Set(f, offset_[0]), hn::Set(f, offset_[1]), hn::Set(f, offset_[2])}; }
     HWY_INLINE IVec quarter(I d, int first) const { return hn::ShiftRight<2>(hn::Iota(d, first)); }
     HWY_INLINE Mask asked(I d, IVec quarter) const {
-        const IVec bit = hn::And(hn::Set(d, static_cast<std::int32_t>(point_.quarters)), hn::Shl(hn::Set(d, 1), quarter));
+        const IVec bit =
+            hn::And(hn::Set(d, static_cast<std::int32_t>(point_.quarters)), hn::Shl(hn::Set(d, 1), quarter));
         return hn::RebindMask(F(), hn::Ne(bit, hn::Zero(d)));
     }
     HWY_INLINE void barycentrics(F f, int first, Vec b[3]) const {
@@ -113,7 +114,7 @@ class Lookup {
     // Where the points are when their quarter begins, and the way to where they are when it ends; in tangents or
     // metres. A straight line between is near enough to find the texels in which they are seen. False if a point is
     // behind the light.
-    HWY_INLINE bool find_ways(int first, float& farthest) {
+    HWY_INLINE bool find_ways(int first, float& reach, float& depth) {
         const F f;
         const I d;
         const IVec q = quarter(d, first);
@@ -124,6 +125,17 @@ class Lookup {
         Place begin, end;
         if constexpr (kPath == Path::kStill) {
             begin = end = blend(f, b, receiver_.knots(), offset(f));
+        } else if constexpr (kPath == Path::kStraight) {
+            const Place open = blend(f, b, receiver_.knots(), offset(f));
+            const Place close = blend(f, b, receiver_.knots() + 9, offset(f));
+            const Vec s = hn::Mul(hn::ConvertTo(f, q), hn::Set(f, 1.0f / kSamples));
+            const Vec change[3] = {hn::Sub(close.x, open.x), hn::Sub(close.y, open.y), hn::Sub(close.z, open.z)};
+            const auto at = [&](Vec s) HWY_ATTR {
+                return Place{plus_product(open.x, s, change[0]), plus_product(open.y, s, change[1]),
+                             plus_product(open.z, s, change[2])};
+            };
+            begin = at(s);
+            end = at(hn::Add(s, hn::Set(f, 1.0f / kSamples)));
         } else {
             const IVec index = hn::Mul(q, hn::Set(d, 9));
             begin = blend_each(f, b, receiver_.borders(), index, offset(f));
@@ -140,25 +152,33 @@ class Lookup {
         hn::Store(by, f, from_y_ + first);
         hn::Store(hn::Sub(ex, bx), f, way_x_ + first);
         hn::Store(hn::Sub(ey, by), f, way_y_ + first);
-        const Vec reach = hn::Max(hn::Max(hn::Abs(bx), hn::Abs(by)), hn::Max(hn::Abs(ex), hn::Abs(ey)));
-        farthest = std::max(farthest, hn::GetLane(hn::MaxOfLanes(f, hn::IfThenElseZero(wanted, reach))));
+        const auto most = [&](float so_far, Vec here) HWY_ATTR {
+            return std::max(so_far, hn::GetLane(hn::MaxOfLanes(f, hn::IfThenElseZero(wanted, here))));
+        };
+        reach = most(reach, hn::Max(hn::Max(hn::Abs(bx), hn::Abs(by)), hn::Max(hn::Abs(ex), hn::Abs(ey))));
+        if constexpr (kPerspective) depth = most(depth, hn::Max(begin.z, end.z));
         return true;
     }
 
     // Coarser than asked for if a point would lie beyond the level's edge. False if it lies beyond all.
-    HWY_INLINE bool choose_level(float farthest) {
+    HWY_INLINE bool choose_level(float reach, float depth) {
         const ShadowMap& map = receiver_.map();
         float distance = 1.0f;
         if constexpr (kPerspective) {
             distance = glm::dot(point_.position - glm::vec3(map.view().position), glm::vec3(map.view().axes[2]));
             if (!(distance > 1e-3f)) return false;
-            if (!(farthest < 0.99f * kWidestTangent)) return false;
+            if (!(reach < 0.99f * kWidestTangent)) return false;
         }
         exponent_ = map.exponent_of(point_.texel / distance);
-        const float reach = half_ - static_cast<float>(kCellSize);
-        while (exponent_ < ShadowMap::kCoarsest && !(farthest < std::ldexp(reach, exponent_))) ++exponent_;
-        scale_ = std::ldexp(1.0f, -exponent_);
-        return farthest < std::ldexp(reach, exponent_);
+        const float edge = half_ - static_cast<float>(kCellSize);
+        while (exponent_ < ShadowMap::kCoarsest && !(reach < std::ldexp(edge, exponent_))) ++exponent_;
+        const float texel = std::ldexp(1.0f, exponent_);
+        scale_ = 1.0f / texel;
+        if constexpr (kPerspective)
+            limit_ = map.limit_of(depth * (1.0f + kFarthestBehind * texel));
+        else
+            limit_ = map.limit_of(INFINITY);
+        return reach < edge * texel;
     }
 
     // Texels of one place for each lane.
@@ -170,8 +190,8 @@ class Lookup {
         const Vec half = hn::Set(f, half_);
         const IVec px = hn::ConvertTo(d, hn::Add(x, half)), py = hn::ConvertTo(d, hn::Sub(half, y));
         const IVec three = hn::Set(d, 3), seven = hn::Set(d, 7);
-        const IVec block = hn::Add(hn::ShiftLeft<3>(hn::And(hn::ShiftRight<2>(py), seven)),
-                                   hn::And(hn::ShiftRight<2>(px), seven));
+        const IVec block =
+            hn::Add(hn::ShiftLeft<3>(hn::And(hn::ShiftRight<2>(py), seven)), hn::And(hn::ShiftRight<2>(px), seven));
         const IVec lane = hn::Add(hn::ShiftLeft<2>(hn::And(py, three)), hn::And(px, three));
         const IVec index = hn::Add(hn::ShiftLeft<4>(hn::Add(hn::ShiftLeft<2>(block), quarter)), lane);
         return {hn::Add(hn::ShiftLeft<16>(hn::ShiftRight<5>(py)), hn::ShiftRight<5>(px)), index};
@@ -186,7 +206,7 @@ class Lookup {
         while (!hn::AllFalse(f, wanted)) {
             const std::int32_t next = keys[hn::FindKnownFirstTrue(f, wanted)];
             const Mask here = hn::And(wanted, hn::RebindMask(f, hn::Eq(key, hn::Set(d, next))));
-            visit(here, receiver_.cell(exponent_, next));
+            visit(here, receiver_.cell(exponent_, limit_, next));
             wanted = hn::AndNot(here, wanted);
         }
     }
@@ -323,12 +343,12 @@ class Lookup {
             Y[k] = hn::Sub(hn::Mul(v[1], scale), kPerspective ? hn::Mul(sample_y, v[2]) : sample_y);
             z[k] = v[2];
         }
-        const auto cross = [](Vec ax, Vec by, Vec bx, Vec ay) HWY_ATTR { return hn::Sub(hn::Mul(ax, by), hn::Mul(bx, ay)); };
+        const auto cross = [](Vec ax, Vec by, Vec bx, Vec ay)
+                               HWY_ATTR { return hn::Sub(hn::Mul(ax, by), hn::Mul(bx, ay)); };
         const Vec e0 = cross(X[1], Y[2], X[2], Y[1]), e1 = cross(X[2], Y[0], X[0], Y[2]),
                   e2 = cross(X[0], Y[1], X[1], Y[0]);
-        const auto sum = [&](Vec p, Vec q, Vec r) HWY_ATTR {
-            return plus_product(plus_product(hn::Mul(p, z[0]), q, z[1]), r, z[2]);
-        };
+        const auto sum = [&](Vec p, Vec q, Vec r)
+                             HWY_ATTR { return plus_product(plus_product(hn::Mul(p, z[0]), q, z[1]), r, z[2]); };
         const Vec own = sum(b[0], b[1], b[2]);
         Vec texel = hn::Set(f, 1.0f / scale_);
         if constexpr (kPerspective) texel = hn::Mul(texel, own);
@@ -343,7 +363,7 @@ class Lookup {
     const ShadowPoint& point_;
     std::uint32_t seed_;
     float offset_[3], half_, scale_ = 1.0f;
-    int exponent_ = 0;
+    int exponent_ = 0, limit_ = 0;
     HWY_ALIGN float from_x_[kAll], from_y_[kAll], way_x_[kAll], way_y_[kAll];
 };
 

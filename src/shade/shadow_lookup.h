@@ -40,15 +40,16 @@ class ShadowReceiver {
     const float* knots() const { return knots_.data(); }
     const float* borders() const { return borders_.data(); }
 
-    /// Cell (key % 65536, key / 65536) of a level.
+    /// Cell (key % 65536, key / 65536) of a level, with what casts up to a limit.
     struct Cell {
         const float* depths = nullptr;
         const SampleVector* samples = nullptr;
     };
-    const Cell& cell(int exponent, std::int32_t key) {
-        if (key != key_ || exponent != exponent_) {
-            cell_ = {map_->depths(exponent, key & 0xffff, key >> 16), map_->samples(key & 0xffff, key >> 16)};
-            key_ = key, exponent_ = exponent;
+    const Cell& cell(int exponent, int limit, std::int32_t key) {
+        if (key != key_ || exponent != exponent_ || limit != limit_) {
+            const int x = key & 0xffff, y = key >> 16;
+            cell_ = {map_->depths(exponent, limit, x, y), map_->samples(x, y)};
+            key_ = key, exponent_ = exponent, limit_ = limit;
         }
         return cell_;
     }
@@ -59,7 +60,7 @@ class ShadowReceiver {
     int segments_ = 1;
     std::vector<float> knots_;
     std::array<float, 9 * (ShadowMap::kSamples + 1)> borders_;
-    int exponent_ = 0;
+    int exponent_ = 0, limit_ = 0;
     std::int32_t key_ = -1;
     Cell cell_;
 };

@@ -13,6 +13,8 @@ namespace {
 
 constexpr int kFinest = -24;  // exponent of a texel's size
 constexpr int kPageCells = 16;
+constexpr int kLimits = 24, kLeastLimit = -8;  // depths of 2^-8 metres and up; the last one holds everything
+constexpr int kLevels = (ShadowMap::kCoarsest - kFinest + 1) * kLimits;
 
 // What all cells share in which nothing is.
 const std::vector<float> kEmptyCell(std::size_t{kCellSize} * kCellSize * ShadowMap::kSamples, INFINITY);
@@ -55,10 +57,10 @@ ShadowMap::ShadowMap(const WorldMotion& world, const Frame& frame, const SampleT
       width_(width),
       // Half a level of the finest texels holds the widest tangent.
       least_exponent_(view.perspective ? -std::ilogb(0.5 * width / kWidestTangent) : kFinest),
-      levels_(std::make_unique<std::atomic<Level*>[]>(kCoarsest - kFinest + 1)) {}
+      levels_(std::make_unique<std::atomic<Level*>[]>(kLevels)) {}
 
 ShadowMap::~ShadowMap() {
-    for (int i = 0; i <= kCoarsest - kFinest; ++i) delete levels_[i].load();
+    for (int i = 0; i < kLevels; ++i) delete levels_[i].load();
 }
 
 void ShadowMap::prepare() const {
@@ -72,17 +74,21 @@ const Casters& ShadowMap::casters() const {
 
 void ShadowMap::make(bool parallel) const {
     casters_ = make_casters(world_, frame_, view_, width_, parallel);
-    root_exponent_ = view_.perspective
-                         ? -4
-                         : std::clamp(std::ilogb(casters_.extent / kCellSize + 1e-30f) + 1, kFinest, kCoarsest);
+    root_exponent_ =
+        view_.perspective ? -4 : std::clamp(std::ilogb(casters_.extent / kCellSize + 1e-30f) + 1, kFinest, kCoarsest);
 }
 
 int ShadowMap::exponent_of(float texel) const {
     return texel > 0.0f && std::isfinite(texel) ? std::clamp(std::ilogb(texel), least_exponent_, kCoarsest) : kCoarsest;
 }
 
-ShadowMap::Level& ShadowMap::level(int exponent) const {
-    std::atomic<Level*>& place = levels_[exponent - kFinest];
+int ShadowMap::limit_of(float depth) const {
+    if (!view_.perspective || !std::isfinite(depth)) return kLimits - 1;
+    return std::clamp(std::ilogb(depth) + 1 - kLeastLimit, 0, kLimits - 1);
+}
+
+ShadowMap::Level& ShadowMap::level(int exponent, int limit) const {
+    std::atomic<Level*>& place = levels_[(exponent - kFinest) * kLimits + limit];
     if (Level* level = place.load(std::memory_order_acquire)) return *level;
     return *publish(place, std::make_unique<Level>(width_ / kCellSize / kPageCells));
 }
@@ -95,8 +101,8 @@ ShadowMap::Cell& ShadowMap::cell(Level& level, int cx, int cy) const {
 }
 
 // What may be seen in a cell is among what may be seen in the cell of the next level that holds it.
-const ShadowMap::List& ShadowMap::list(int exponent, int cx, int cy) const {
-    Cell& here = cell(level(exponent), cx, cy);
+const ShadowMap::List& ShadowMap::list(int exponent, int limit, int cx, int cy) const {
+    Cell& here = cell(level(exponent, limit), cx, cy);
     if (const List* known = here.list.load(std::memory_order_acquire)) return *known;
     const int middle = width_ / kCellSize / 2;
     const float size = std::ldexp(static_cast<float>(kCellSize), exponent);
@@ -108,18 +114,20 @@ const ShadowMap::List& ShadowMap::list(int exponent, int cx, int cy) const {
         if (box.x0 <= x0 + size && box.x1 >= x0 && box.y0 <= y1 && box.y1 >= y1 - size) made->push_back(i);
     };
     if (exponent >= root_exponent_) {  // known since casters() was asked
-        for (std::uint32_t i = 0; i < boxes.size(); ++i) take(i);
+        const float farthest = limit < kLimits - 1 ? std::ldexp(1.0f, limit + kLeastLimit) : INFINITY;
+        for (std::uint32_t i = 0; i < boxes.size(); ++i)
+            if (boxes[i].nearest <= farthest) take(i);
     } else {
-        for (const std::uint32_t i : list(exponent + 1, middle + ((cx - middle) >> 1), middle + ((cy - middle) >> 1)))
-            take(i);
+        const int px = middle + ((cx - middle) >> 1), py = middle + ((cy - middle) >> 1);
+        for (const std::uint32_t i : list(exponent + 1, limit, px, py)) take(i);
     }
     return *publish<const List>(here.list, std::move(made));
 }
 
-const float* ShadowMap::depths(int exponent, int cx, int cy) const {
-    Cell& here = cell(level(exponent), cx, cy);
+const float* ShadowMap::depths(int exponent, int limit, int cx, int cy) const {
+    Cell& here = cell(level(exponent, limit), cx, cy);
     if (const float* known = here.depths.load(std::memory_order_acquire)) return known;
-    const float* made = render(exponent, cx, cy, list(exponent, cx, cy));
+    const float* made = render(exponent, cx, cy, list(exponent, limit, cx, cy));
     ++cells_rendered_;
     const float* expected = nullptr;
     if (here.depths.compare_exchange_strong(expected, made, std::memory_order_acq_rel)) return made;
@@ -160,8 +168,7 @@ const float* ShadowMap::render(int exponent, int cx, int cy, const List& list) c
     scratch.hits.reset(kSamples);
     CoverCounts counts;
     // In texels of the level: a power of two, so the numbers are the same.
-    cover_vectors(TileWork{seen.frame, table_, scratch.binned, scratch.order, tile, nullptr,
-                           static_cast<float>(scale)},
+    cover_vectors(TileWork{seen.frame, table_, scratch.binned, scratch.order, tile, nullptr, static_cast<float>(scale)},
                   scratch.hits, counts);
     const auto& depths = scratch.hits.depth;
     if (std::all_of(depths.begin(), depths.end(), [](float depth) { return depth == INFINITY; }))

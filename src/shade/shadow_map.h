@@ -39,9 +39,13 @@ class ShadowMap {
     /// Level whose texels are as large as that, metres or tangents.
     int exponent_of(float texel) const;
 
-    /// Depths of a cell's samples, arranged as Hits::depth; infinite where nothing is hit. Thread-safe, and the same
-    /// whoever asks first.
-    const float* depths(int exponent, int cx, int cy) const;
+    /// What a perspective light casts on surfaces is between: a cell that holds less is rendered faster. Number of the
+    /// least limit not below that depth; an orthographic view has none.
+    int limit_of(float depth) const;
+
+    /// Depths of a cell's samples, arranged as Hits::depth; infinite where nothing is hit before the limit, and perhaps
+    /// so beyond it. Thread-safe, and the same whoever asks first.
+    const float* depths(int exponent, int limit, int cx, int cy) const;
     /// Where and when these samples lie: the place of the depth at index i is lane i % kLanes of vector i / kLanes.
     const SampleVector* samples(int cx, int cy) const;
 
@@ -58,9 +62,9 @@ class ShadowMap {
 
     void make(bool parallel) const;
     const Casters& casters() const;
-    Level& level(int exponent) const;
+    Level& level(int exponent, int limit) const;
     Cell& cell(Level& level, int cx, int cy) const;
-    const List& list(int exponent, int cx, int cy) const;
+    const List& list(int exponent, int limit, int cx, int cy) const;
     const float* render(int exponent, int cx, int cy, const List& list) const;
 
     const WorldMotion& world_;

@@ -8,7 +8,7 @@
 namespace pentaprism {
 namespace {
 
-constexpr std::size_t kMostMaps = 64;           // memory; what comes later casts no shadow
+constexpr std::size_t kMostMaps = 64;   // memory; what comes later casts no shadow
 constexpr float kWidestCone = 0.7853f;  // half angle that fits into one face of a cube
 
 // Axes that hold still in the world when the camera moves, so that a still shadow's edge does too.
