@@ -100,7 +100,7 @@ struct MethodSettings {
     VisibilityMethod visibility = VisibilityMethod::kStochastic;
     /// "auto" or a combination of culling_tests(); kRaytrace and kMicropolygon have no use for one: "auto" alone.
     std::string culling = "auto";
-    std::string shading = "pixel";  ///< how often visible surfaces are shaded
+    std::string shading = "decoupled";  ///< how often visible surfaces are shaded
     TextureFilter texture_filter = TextureFilter::kFull;
     BrdfModel brdf = BrdfModel::kGltf;
     ShadowMode shadows = ShadowMode::kMoving;  ///< kStill: of everything as it is at mid-shutter

@@ -209,7 +209,7 @@ void add_method_options(CLI::App& command, MethodSettings& method) {
               });
     add_partly_built(command, group, "--backend", "What computes", "cpu", {"gl"});
     add_value(command, group, "--shading", "pixel|sample|decoupled",
-              "How often visible surfaces are shaded (default pixel)", [&](const std::string& text) {
+              "How often visible surfaces are shaded (default decoupled)", [&](const std::string& text) {
                   method.shading = parse_choice<std::string>(
                       "--shading", text, {{"pixel", "pixel"}, {"sample", "sample"}, {"decoupled", "decoupled"}});
               });
