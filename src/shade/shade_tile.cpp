@@ -94,7 +94,8 @@ std::uint32_t seed_of(const Tile& tile, int pixel, std::uint32_t salt) {
 
 }  // namespace
 
-// One triangle in its cell, localized for each segment of its motion when a sample first asks.
+// One triangle in its cell, localized for each segment of its motion when a sample first asks. Shading knows whole
+// triangles alone, so what a sample sees of a piece is told in terms of these.
 class TileShader::LocalRun {
   public:
     LocalRun(const Frame& frame, const CellCentre& centre) : frame_(frame), centre_(centre) {}
@@ -111,7 +112,12 @@ class TileShader::LocalRun {
             lanes_[segment] = CornerLanes(localize(frame_, triangle_, segment, centre_));
             ready_[segment] = 1;
         }
-        return project(lanes_[segment], sample);
+        Seen seen = project(lanes_[segment], sample);
+        if (frame_.pieces.empty()) return seen;
+        const Float4 b = seen.barycentrics;
+        const glm::vec3 in_source = frame_.in_source(triangle_, {b[0], b[1], b[2]});
+        seen.barycentrics = Float4{in_source.x, in_source.y, in_source.z, 0.0f};
+        return seen;
     }
 
   private:

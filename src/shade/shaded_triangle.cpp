@@ -62,9 +62,9 @@ void ShadedTriangle::project(std::uint32_t triangle) {
     const int segments = frame.parts[frame.part_of[triangle]].segments;
     const int segment = segments / 2;  // the one that holds t = 1/2
     const double s = 0.5 * segments - segment;
-    const MovingTriangle middle = moving_triangle(frame, triangle, segment);
-    const MovingTriangle first = segment == 0 ? middle : moving_triangle(frame, triangle, 0);
-    const MovingTriangle last = segments == 1 ? middle : moving_triangle(frame, triangle, segments - 1);
+    const MovingTriangle middle = moving_source(frame, triangle, segment);
+    const MovingTriangle first = segment == 0 ? middle : moving_source(frame, triangle, 0);
+    const MovingTriangle last = segments == 1 ? middle : moving_source(frame, triangle, segments - 1);
     const auto between = [s](const float ends[2]) { return ends[0] + (static_cast<double>(ends[1]) - ends[0]) * s; };
     glm::dvec3* corner = projection_.corner;
     for (int i = 0; i < 3; ++i) {
@@ -80,6 +80,13 @@ void ShadedTriangle::project(std::uint32_t triangle) {
     projection_.by_x = scale * glm::dvec3(rows[0].x, rows[1].x, rows[2].x);
     projection_.by_y = scale * glm::dvec3(rows[0].y, rows[1].y, rows[2].y);
     projection_.by_1 = scale * glm::dvec3(rows[0].z, rows[1].z, rows[2].z);
+}
+
+// Of a triangle that was cut, the corners know nothing of what lies between.
+double ShadedTriangle::blur_radius(const glm::dvec3& b, const glm::dvec3& point) const {
+    const Frame& frame = scene_.frame();
+    if (frame.pieces.empty() || !frame.view.perspective) return glm::dot(b, projection_.coc) / point.z;
+    return frame.view.coc(point.x, point.y, point.z) / point.z;
 }
 
 // One evaluation stands for all samples of its pixel: it is filtered over the pixel (variance 1/12 each way), over the
@@ -101,7 +108,7 @@ TextureFootprint ShadedTriangle::footprint(const glm::vec3& barycentrics, int se
 
     const glm::dvec3 motion = b.x * projection_.motion[0] + b.y * projection_.motion[1] + b.z * projection_.motion[2];
     const glm::vec2 velocity((glm::dvec2(motion) - motion.z / point.z * glm::dvec2(point)) / point.z);
-    const float coc = static_cast<float>(glm::dot(b, projection_.coc) / point.z);
+    const float coc = static_cast<float>(blur_radius(b, point));
     const float ratio = static_cast<float>(scene_.frame().view.lens.ratio);
 
     TextureFootprint footprint;
@@ -130,7 +137,7 @@ ShadingCell ShadedTriangle::cell_of(const glm::vec3& barycentrics) const {
     if (!(std::max(std::abs(place.x), std::abs(place.y)) < 32768.0)) return {};
     const glm::dvec3 motion = b.x * projection_.motion[0] + b.y * projection_.motion[1] + b.z * projection_.motion[2];
     const glm::dvec2 velocity = (glm::dvec2(motion) - motion.z * place) / point.z;
-    const double coc = glm::dot(b, projection_.coc) / point.z, lens2 = 3.0 * coc * coc;
+    const double coc = blur_radius(b, point), lens2 = 3.0 * coc * coc;
     // floor(log2(share * length)), from the squared length.
     const auto level = [kMost = kCoarsest](double length2) {
         const double cells2 = kBlurShare * kBlurShare * length2;

@@ -60,6 +60,8 @@ class ShadedTriangle {
         glm::dvec3 coc;               // c of each corner
     };
     void project(std::uint32_t triangle);
+    /// Signed, in pixels; of the point x, y, w with these barycentrics.
+    double blur_radius(const glm::dvec3& barycentrics, const glm::dvec3& point) const;
     glm::vec3 mapped_normal(const glm::vec3& barycentrics, const glm::vec3& map) const;
     glm::vec3 smooth_offset(const glm::vec3& barycentrics, const glm::vec3& normal, bool front) const;
     TextureFootprint footprint(const glm::vec3& barycentrics, int set, const ShadingCell& cell) const;

@@ -88,6 +88,7 @@ ShadowMap::ShadowMap(const WorldMotion& world, const Frame& frame, const SampleT
     for (Part& part : frame_.parts) part.two_sided = true;  // a shadow does not ask for the side
     frame_.corners = world.corners;
     frame_.part_of = frame.part_of;
+    frame_.pieces = frame.pieces;
     frame_.points.resize(world.points.size());
     if (!view.perspective) frame_.depths.resize(world.points.size());
     parallel_ranges(world.points.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
@@ -235,7 +236,7 @@ std::unique_ptr<float[]> ShadowMap::render(int exponent, int cx, int cy, const L
 }
 
 ShadowMap::Corners ShadowMap::corners(std::uint32_t triangle, int segment) const {
-    const MovingTriangle m = moving_triangle(frame_, triangle, segment);
+    const MovingTriangle m = moving_source(frame_, triangle, segment);
     const Part& part = frame_.parts[frame_.part_of[triangle]];
     Corners corners;
     for (int i = 0; i < 3; ++i) {
