@@ -283,15 +283,13 @@ Frame pose_frame(const Scene& scene, const View& view, std::span<const Index> an
     return frame;
 }
 
-namespace {
-
-MovingTriangle moving_corners(const Frame& frame, const Part& part, const std::array<std::uint32_t, 3>& points,
-                              int segment) {
+MovingTriangle moving_triangle(const Frame& frame, std::uint32_t triangle, int segment) {
+    const Part& part = frame.parts[frame.part_of[triangle]];
     MovingTriangle m;
     for (int i = 0; i < 3; ++i)
         for (int end = 0; end < 2; ++end) {
             const std::size_t knot = part.moves ? static_cast<std::size_t>(segment) + end : 0;
-            const std::size_t p = points[i] + knot * part.vertex_count;
+            const std::size_t p = frame.corners[3 * std::size_t{triangle} + i] + knot * part.vertex_count;
             const glm::vec4& point = frame.points[p];
             m.x[i][end] = point.x;
             m.y[i][end] = point.y;
@@ -300,20 +298,6 @@ MovingTriangle moving_corners(const Frame& frame, const Part& part, const std::a
             m.z[i][end] = frame.view.perspective ? point.z : frame.depths[p];
         }
     return m;
-}
-
-}  // namespace
-
-MovingTriangle moving_triangle(const Frame& frame, std::uint32_t triangle, int segment) {
-    const std::uint32_t* corner = &frame.corners[3 * std::size_t{triangle}];
-    return moving_corners(frame, frame.parts[frame.part_of[triangle]], {corner[0], corner[1], corner[2]}, segment);
-}
-
-MovingTriangle moving_source(const Frame& frame, std::uint32_t triangle, int segment) {
-    if (frame.pieces.empty()) return moving_triangle(frame, triangle, segment);
-    const Part& part = frame.parts[frame.part_of[triangle]];
-    const auto [a, b, c] = frame.vertices(triangle);
-    return moving_corners(frame, part, {part.first_point + a, part.first_point + b, part.first_point + c}, segment);
 }
 
 }  // namespace pentaprism

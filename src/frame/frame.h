@@ -80,7 +80,4 @@ struct MovingTriangle {
 };
 MovingTriangle moving_triangle(const Frame& frame, std::uint32_t triangle, int segment);
 
-/// The same of vertices(): all of what a piece is cut from. Its c is that of the corners alone.
-MovingTriangle moving_source(const Frame& frame, std::uint32_t triangle, int segment);
-
 }  // namespace pentaprism
