@@ -122,9 +122,26 @@ void add_lens_options(CLI::App& command, CameraSettings& camera) {
                camera.aperture_roundness);
     add_number(command, group, "--aperture-ratio", "R",
                "Height over width of the circle of confusion (default: the camera's, else 1)", camera.aperture_ratio);
-    add_planned_value(command, group, "--focus-range", "NEAR,FAR", "Keep this range of depth sharp; metres");
-    add_planned_value(command, group, "--max-foreground-blur", "PX",
-                      "Largest blur in front of the focus, a radius in pixels");
+    add_value(command, group, "--focus-range", "NEAR,FAR",
+              "Keep this range of depth sharp; metres (default: the camera's, else a real lens)",
+              [&](const std::string& text) {
+                  const auto values = parse_numbers("--focus-range", text, 2, "NEAR,FAR");
+                  camera.focus_range = {values[0], values[1]};
+              });
+    add_number(command, group, "--tilt", "DEG",
+               "Leans the plane of focus: above 0, its top is farther (default: the camera's, else 0)",
+               camera.tilt_deg);
+    add_number(command, group, "--swing", "DEG", "The same for its right side", camera.swing_deg);
+    add_value(command, group, "--aperture-image", "FILE",
+              "A picture, .png or .exr, as the lens: light comes through its circle where it is bright",
+              [&](const std::string& text) { camera.aperture_image = text; });
+    add_number(command, group, "--cats-eye", "A",
+               "How far the barrel hides the lens in a corner of the picture, 0 to 1.5 lens radii (default: the "
+               "camera's, else 0)",
+               camera.cats_eye);
+    add_number(command, group, "--max-foreground-blur", "PX",
+               "Largest blur in front of the focus, a radius in pixels (default: the camera's, else any)",
+               camera.max_foreground_blur);
     command
         .add_flag_callback(
             "--no-defocus", [&] { camera.defocus = false; }, "A pinhole, whatever else is said")
@@ -232,7 +249,14 @@ void add_method_options(CLI::App& command, MethodSettings& method) {
                       "--shadows", text,
                       {{"off", ShadowMode::kOff}, {"still", ShadowMode::kStill}, {"moving", ShadowMode::kMoving}});
               });
-    add_planned_value(command, group, "--sampler", "NAME", "Sample pattern");
+    add_value(command, group, "--sampler", "stratified|sobol|blue-noise|independent",
+              "Sample pattern (default stratified, the fastest)", [&](const std::string& text) {
+                  method.sampler = parse_choice<Sampler>("--sampler", text,
+                                                         {{"stratified", Sampler::kStratified},
+                                                          {"sobol", Sampler::kSobol},
+                                                          {"blue-noise", Sampler::kBlueNoise},
+                                                          {"independent", Sampler::kIndependent}});
+              });
     add_value(command, group, "--seed", "N", "Seed of the sample pattern (default 0)", [&](const std::string& text) {
         method.seed =
             static_cast<std::uint32_t>(parse_whole("--seed", text, 0, std::numeric_limits<std::uint32_t>::max()));

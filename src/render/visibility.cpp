@@ -1,6 +1,7 @@
 #include "render/visibility.h"
 
 #include <algorithm>
+#include <pentaprism/error.h>
 
 namespace pentaprism {
 namespace {
@@ -26,8 +27,14 @@ Grouping grouping_for(const Frame& frame) {
 }
 
 SampleTable make_samples(const Frame& frame, int spp, const MethodSettings& method) {
+    if (frame.view.lens.cats_eye > 0.0 && pattern_for(method.visibility) != SamplePattern::kFree)
+        throw Error(ErrorKind::kUsage,
+                    "the camera has a cat's eye, but with --visibility accumulation and interleaved all places share "
+                    "their lens points; give --cats-eye 0");
     return SampleTable(spp, method.seed, frame.view.lens, grouping_for(frame), pattern_for(method.visibility),
-                       SampleTimes(frame.view.shutter, frame.view.width, frame.view.height));
+                       SampleTimes(frame.view.shutter, frame.view.width, frame.view.height),
+                       CatsEye(frame.view.lens.cats_eye, frame.view.width, frame.view.height, frame.view.lens.ratio),
+                       method.sampler);
 }
 
 Visibility::Visibility(const Frame& frame, const SampleTable& samples, const MethodSettings& method,
