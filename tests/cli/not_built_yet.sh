@@ -11,13 +11,9 @@ done <<'END'
 --max-foreground-blur 5
 --backend gl
 --sampler sobol
---aov depth,albedo
---aov ste
 --samples dump
---resume
---shard 1/4
 END
-for command in merge view; do
+for command in view; do
     refuses 2 "$command is not built yet \(planned: see CHANGELOG\)" "$command" some thing --option
     check "$command is in the help" grep -q "^  $command .*not built yet" <(help_of)
 done
