@@ -122,10 +122,9 @@ TEST(Randomization, ReadsWhatItWrites) {
 
 TEST(Randomization, SaysWhatItDoesNotUnderstand) {
     EXPECT_EQ(refusal("{}"), "");
-    for (const char* text : {"", "[1]", "{\"fstop\": [1, 2]", "nonsense"})
+    for (const char* text : {"", "[1]", "{\"fstop\": [1, 1e999]}", "{\"fstop\": [1, 2]", "nonsense"})
         EXPECT_NE(refusal(text).find("it is no JSON object"), std::string::npos) << text;
-    for (const char* range :
-         {"2", "[2]", "[3, 2]", "[1, 2, 3]", "[0, 2]", "[-1, 2]", "[\"1\", 2]", "[1, 1e999]", "null"})
+    for (const char* range : {"2", "[2]", "[3, 2]", "[1, 2, 3]", "[0, 2]", "[-1, 2]", "[\"1\", 2]", "null"})
         EXPECT_NE(refusal(std::string("{\"fstop\": ") + range + "}").find("fstop is not a range [LOW, HIGH] above 0"),
                   std::string::npos)
             << range;
