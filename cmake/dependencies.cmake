@@ -24,3 +24,12 @@ if(PENTAPRISM_EMBREE)
     set(PENTAPRISM_HAVE_EMBREE ON)
   endif()
 endif()
+
+set(PENTAPRISM_HAVE_MPI OFF)
+if(PENTAPRISM_MPI)
+  set(MPI_CXX_SKIP_MPICXX ON)  # C's interface is all that is used
+  find_package(MPI QUIET COMPONENTS CXX)
+  if(TARGET MPI::MPI_CXX)
+    set(PENTAPRISM_HAVE_MPI ON)
+  endif()
+endif()

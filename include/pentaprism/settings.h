@@ -24,7 +24,10 @@ enum class Aov : std::uint8_t {
     kMaterialId,
     kCryptomatte,
     kCoverage,
-    kVariance
+    kVariance,
+    kAlbedo,
+    kOcclusion,
+    kSte  ///< MethodSettings::culling must name a test: the fast path keeps no account of pixels
 };
 /// kGltf: Lambert under GGX, energy-conserving. kBurley: Burley's diffuse lobe (2012) and no compensation, which is
 /// what Blender's renderer had until 4.0; for comparisons with it.
@@ -55,6 +58,13 @@ struct ImageSettings {
                               ///< the scene, too
 };
 
+/// A camera a little elsewhere than the scene has it: shifted along its own axes (right, up, backwards; metres), then
+/// turned about them (up and down, left and right, roll; degrees, in the order y, x, z).
+struct CameraOffset {
+    std::array<double, 3> shift_m{}, turn_deg{};
+    bool operator==(const CameraOffset&) const = default;
+};
+
 /// An unset value comes from the scene's camera (LensInfo), else from the default in the comment.
 struct CameraSettings {
     std::string camera;                     ///< name or index; empty: the first, else one that frames the scene
@@ -79,6 +89,8 @@ struct CameraSettings {
     std::optional<double> tilt_deg, swing_deg;
     std::string aperture_image;      ///< .png or .exr file whose luminance is the lens, instead of blades
     std::optional<double> cats_eye;  ///< how far a corner's lens is cut by the barrel, in lens radii; 0 to 1.5, 0
+    CameraOffset offset;                               ///< the same for the whole frame
+    CameraOffset offset_before, offset_after;          ///< of the neighbouring frames: what flow leads to
 };
 
 struct ShutterSettings {

@@ -86,6 +86,11 @@ void check(const CameraSettings& camera, const ImageSettings& image) {
                 fmt::format("--focus-range {},{}: --focus-distance {} lies outside", from, to, *camera.focus_distance));
         }
     }
+    for (const CameraOffset* offset : {&camera.offset, &camera.offset_before, &camera.offset_after})
+        for (int axis = 0; axis < 3; ++axis) {
+            check_from("camera offset", offset->shift_m[axis], -kHuge, kHuge);
+            check_from("camera offset", offset->turn_deg[axis], -360.0, 360.0);
+        }
     if (camera.fstop && camera.lens_radius)
         refuse("--fstop and --lens-radius say the same in two ways; give one of them");
     if (int{camera.focus_distance.has_value()} + int{!camera.focus_object.empty()} +
@@ -256,6 +261,14 @@ void put(Json& json, const char* key, const std::string& value) {
     if (!value.empty()) json[key] = value;
 }
 
+void put(Json& json, const char* key, const CameraOffset& value) {
+    if (value != CameraOffset{}) json[key] = {{"shift_m", value.shift_m}, {"turn_deg", value.turn_deg}};
+}
+
+bool has(const std::vector<Aov>& aovs, Aov wanted) {
+    return std::find(aovs.begin(), aovs.end(), wanted) != aovs.end();
+}
+
 std::string file_name(const std::string& path) {
     return std::filesystem::path(path).filename().string();
 }
@@ -268,6 +281,8 @@ void validate(const RenderSettings& settings) {
     check(settings.shutter);
     check(settings.animation);
     check(settings.method);
+    if (has(settings.image.aovs, Aov::kSte) && settings.method.culling == "auto")
+        refuse("--aov ste: the fast path keeps no account of pixels; name a test with --culling, such as hull");
     const bool shares_times = settings.method.visibility == VisibilityMethod::kAccumulation ||
                               settings.method.visibility == VisibilityMethod::kInterleaved;
     if (settings.method.visibility == VisibilityMethod::kRaytrace) {
@@ -319,6 +334,9 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
     put(json, "swing_deg", camera.swing_deg);
     put(json, "focus_range", camera.focus_range);
     put(json, "max_foreground_blur", camera.max_foreground_blur);
+    put(json, "camera_offset", camera.offset);
+    put(json, "camera_offset_before", camera.offset_before);
+    put(json, "camera_offset_after", camera.offset_after);
     json["motion_blur"] = shutter.motion_blur;
     put(json, "shutter", shutter.shutter);
     json["shutter_position"] = name_of(shutter.position);
@@ -329,6 +347,7 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
     json["fps"] = animation.fps;
     json["animation"] = animation.animation;
     json["visibility"] = name_of(method.visibility);
+    if (has(image.aovs, Aov::kSte)) json["culling"] = method.culling;  // else it changes no pixel
     json["shading"] = method.shading;
     json["texture_filter"] = method.texture_filter == TextureFilter::kOff     ? "off"
                              : method.texture_filter == TextureFilter::kPixel ? "pixel"

@@ -222,9 +222,8 @@ Shutter resolve_shutter(const RenderSettings& settings, const LensInfo& info, do
     return shutter;
 }
 
-}  // namespace
-
-glm::dmat4 world_to_camera(const View& view, const Pose& pose) {
+// As the scene has it, without an offset.
+glm::dmat4 world_to_scene_camera(const View& view, const Pose& pose) {
     if (view.camera_node == kNone) return view.fixed_world_to_camera;
     // A camera ignores its node's scale (glTF 2.0, 3.10): only position and directions count.
     const glm::dmat4& world = pose.world[view.camera_node];
@@ -238,10 +237,29 @@ glm::dmat4 world_to_camera(const View& view, const Pose& pose) {
     return glm::affineInverse(rigid);
 }
 
+// From the scene's camera to one that is shifted and turned.
+std::optional<glm::dmat4> offset_matrix(const CameraOffset& offset) {
+    if (offset == CameraOffset{}) return std::nullopt;
+    const auto& [shift, turn] = offset;
+    glm::dmat4 placed = glm::translate(glm::dmat4(1.0), glm::dvec3(shift[0], shift[1], shift[2]));
+    placed = glm::rotate(placed, glm::radians(turn[1]), glm::dvec3(0.0, 1.0, 0.0));
+    placed = glm::rotate(placed, glm::radians(turn[0]), glm::dvec3(1.0, 0.0, 0.0));
+    placed = glm::rotate(placed, glm::radians(turn[2]), glm::dvec3(0.0, 0.0, 1.0));
+    return glm::affineInverse(placed);
+}
+
+}  // namespace
+
+glm::dmat4 world_to_camera(const View& view, const Pose& pose) {
+    const glm::dmat4 to_camera = world_to_scene_camera(view, pose);
+    return view.offset ? *view.offset * to_camera : to_camera;
+}
+
 View make_view(const Scene& scene, const RenderSettings& settings, double frame) {
     View view;
     view.width = settings.image.width;
     view.height = settings.image.height;
+    view.offset = offset_matrix(settings.camera.offset);
     const std::vector<Index> animations = choose_animations(scene, settings.animation.animation);
     view.camera_node = find_camera_node(scene, settings.camera.camera);
     if (view.camera_node == kNone) {

@@ -7,6 +7,7 @@
 // 1 everywhere and keeps its depth in z; a perspective camera has z = w.
 
 #include <glm/mat4x4.hpp>
+#include <optional>
 #include <pentaprism/scene.h>
 #include <pentaprism/settings.h>
 #include <string>
@@ -40,6 +41,7 @@ struct View {
     Shutter shutter;
     Index camera_node = kNone;              ///< kNone: a camera that frames the scene
     glm::dmat4 fixed_world_to_camera{1.0};  ///< used when camera_node is kNone
+    std::optional<glm::dmat4> offset;       ///< from the scene's camera to that of CameraSettings::offset
     std::string camera_name;
     double focal_length_mm = 0.0;
     bool optics_move = false;  ///< zoom or focus are animated: see view_at()

@@ -283,14 +283,6 @@ void add_planned_value(CLI::App& command, const std::string& group, const std::s
               [name](const std::string&) { refuse_as_planned(name); });
 }
 
-void add_planned_flag(CLI::App& command, const std::string& group, const std::string& name,
-                      const std::string& description) {
-    command
-        .add_flag_callback(
-            name, [name] { refuse_as_planned(name); }, description + " (not built yet)")
-        ->group(group);
-}
-
 void add_scene_argument(CLI::App& command, std::string& scene) {
     command.add_option("SCENE", scene, "A .gltf, .glb or .obj file, or builtin:NAME (see `pentaprism scene --list`)")
         ->required()

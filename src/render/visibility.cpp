@@ -37,6 +37,14 @@ SampleTable make_samples(const Frame& frame, int spp, const MethodSettings& meth
                        method.sampler);
 }
 
+std::vector<Tile> tiles_over(const PixelRect& limits, int size) {
+    std::vector<Tile> tiles;
+    for (int y = limits.y0 / size * size; y < limits.y1; y += size)
+        for (int x = limits.x0 / size * size; x < limits.x1; x += size)
+            tiles.push_back({x, y, std::min(x + size, limits.x1), std::min(y + size, limits.y1)});
+    return tiles;
+}
+
 Visibility::Visibility(const Frame& frame, const SampleTable& samples, const MethodSettings& method,
                        const PixelRect& limits)
     : frame_(frame),
@@ -48,10 +56,7 @@ Visibility::Visibility(const Frame& frame, const SampleTable& samples, const Met
         tracer_ = make_tracer(frame, samples);
     else
         bins_.emplace(frame, method.tile_size, limits);
-    const int size = method.tile_size;
-    for (int y = limits.y0 / size * size; y < limits.y1; y += size)
-        for (int x = limits.x0 / size * size; x < limits.x1; x += size)
-            tiles_.push_back({x, y, std::min(x + size, limits.x1), std::min(y + size, limits.y1)});
+    tiles_ = tiles_over(limits, method.tile_size);
 }
 
 void Visibility::cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map) const {

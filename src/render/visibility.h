@@ -20,7 +20,7 @@ class Visibility {
     /// that does not exist, Error(kBackend) for a tracer that is not there.
     Visibility(const Frame& frame, const SampleTable& samples, const MethodSettings& method, const PixelRect& limits);
 
-    /// Tiles that cover the limits, rows from top to bottom, each row from left to right.
+    /// tiles_over() the limits.
     const std::vector<Tile>& tiles() const { return tiles_; }
 
     /// Fills the tile's hits. Thread-safe: each caller brings its own Hits and may share a map of the whole picture, in
@@ -40,6 +40,9 @@ class Visibility {
     std::unique_ptr<const Tracer> tracer_;
     std::vector<Tile> tiles_;
 };
+
+/// Tiles of `size` that cover the limits, rows from top to bottom, each row from left to right.
+std::vector<Tile> tiles_over(const PixelRect& limits, int size);
 
 /// The samples of a picture as the method wants them.
 SampleTable make_samples(const Frame& frame, int spp, const MethodSettings& method);

@@ -8,13 +8,9 @@ while read -r option value; do
     refuses 2 "$option.* is not built yet \(planned: see CHANGELOG\)" render builtin:cubes -o a.exr "$option" $value
 done <<'END'
 --backend gl
---aov depth,albedo
---aov ste
 --samples dump
---resume
---shard 1/4
 END
-for command in merge view; do
+for command in view; do
     refuses 2 "$command is not built yet \(planned: see CHANGELOG\)" "$command" some thing --option
     check "$command is in the help" grep -q "^  $command .*not built yet" <(help_of)
 done
