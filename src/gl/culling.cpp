@@ -35,7 +35,7 @@ std::vector<std::string> culling_names() {
 }
 
 Culling parse_gl_culling(const std::string& choice) {
-    const Culling culling = parse_culling(choice == "auto" ? "improved-dual-space" : choice);
+    const Culling culling = parse_culling(choice == "auto" ? "bbox" : choice);
     for (const CullStep& step : culling) {
         if (!has_twin(step.test->name))
             throw Error(ErrorKind::kUsage, fmt::format("--culling {}: not with --backend gl, which has auto, {}",

@@ -10,7 +10,7 @@
 namespace pentaprism::gl {
 namespace {
 
-constexpr GLuint kSampleUnit = 0, kSeenUnit = 0, kTestedImage = 0, kCoveredImage = 1;
+constexpr GLuint kSampleUnit = 0, kOpacityUnits = 1, kSeenUnit = 0, kTestedImage = 0, kCoveredImage = 1;
 
 Program raster_program(const Device& device, const std::string& culling) {
     const std::string shader = culling_shader(parse_gl_culling(culling));
@@ -59,6 +59,7 @@ Pipeline::Pipeline(const Device& device, const Frame& frame, const SampleTable& 
       width_(largest.cell_columns * kCellSize),
       height_(largest.cell_rows * kCellSize),
       geometry_(frame),
+      opacity_(frame),
       samples_(static_cast<std::size_t>(width_) * height_ * slots_),
       raster_(raster_program(device, culling)),
       collector_({{GL_COMPUTE_SHADER, "gl/collect.comp.glsl"}}, device.defines()),
@@ -74,6 +75,7 @@ Pipeline::Pipeline(const Device& device, const Frame& frame, const SampleTable& 
     glNamedFramebufferRenderbuffer(framebuffer_, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
     check("making the buffers of a frame");
     set_view(raster_, frame.view);
+    raster_.set("samples_per_pixel", table.spp());
     set_view(collector_, frame.view);
 }
 
@@ -90,7 +92,10 @@ void Pipeline::set_uniforms(const Region& region, int pass_slots) const {
 void Pipeline::draw() const {
     raster_.use();
     geometry_.bind();
-    for (const Part& part : frame_.parts) {
+    opacity_.bind(kOpacityUnits);
+    for (std::size_t p = 0; p < frame_.parts.size(); ++p) {
+        const Part& part = frame_.parts[p];
+        opacity_.set(raster_, p);
         const int segments = part.moves ? part.segments : 1;
         raster_.set("first_triangle", part.first_triangle);
         raster_.set("two_sided", part.two_sided ? 1 : 0);

@@ -2,6 +2,7 @@
 // What the device keeps of a frame, and the passes over it. All of it needs a Device::Current.
 
 #include "gl/device.h"
+#include "gl/opacity_upload.h"
 #include "gl/program.h"
 #include "gl/region.h"
 #include "gl/upload.h"
@@ -37,6 +38,7 @@ class Pipeline {
     const SampleTable& table_;
     int slots_, width_, height_;
     FrameUpload geometry_;
+    OpacityUpload opacity_;
     SampleUpload samples_;
     Program raster_, collector_;
     Buffer collected_;

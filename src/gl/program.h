@@ -46,6 +46,10 @@ class Program {
     void set(const char* name, unsigned value) const { glProgramUniform1ui(object_, at(name), value); }
     void set(const char* name, float value) const { glProgramUniform1f(object_, at(name), value); }
     void set(const char* name, double value) const { glProgramUniform1d(object_, at(name), value); }
+    void set(const char* name, float a, float b) const { glProgramUniform2f(object_, at(name), a, b); }
+    void set(const char* name, float a, float b, float c, float d) const {
+        glProgramUniform4f(object_, at(name), a, b, c, d);
+    }
     void set(const char* name, int a, int b) const { glProgramUniform2i(object_, at(name), a, b); }
     void set(const char* name, int a, int b, int c, int d) const { glProgramUniform4i(object_, at(name), a, b, c, d); }
 

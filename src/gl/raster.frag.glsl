@@ -3,9 +3,11 @@
 
 #include "cover/exact.glsl"
 #include "culling"
+#include "frame/opacity.glsl"
 #include "gl/samples.glsl"
 
 uniform ivec4 region;
+uniform uint first_triangle;  // of the part
 uniform float segments, segment;
 uniform bool two_sided;
 
@@ -30,7 +32,8 @@ void main() {
     vec2 centre = cell_centre(pixel / kCellSize);
     LocalTriangle T = localize(MovingTriangle(bound.q, bound.r, bound.z_q, bound.z_r), bound.box, centre, segments, segment,
                                two_sided);
-    LocalSample point = unpack_sample(texelFetch(sample_points, entry_of(pixel, gl_SampleID)));
+    uvec4 packed_sample = texelFetch(sample_points, entry_of(pixel, gl_SampleID));
+    LocalSample point = unpack_sample(packed_sample);
     // Samples of another segment of the path are that segment's; no test has to find that out.
     float fraction = segment_time(T, point.t);
     if (!(fraction >= 0.0 && fraction < 1.0)) discard;
@@ -39,6 +42,9 @@ void main() {
     SampleHit hit = cover_sample(T, point, centre);
     if (!hit.hit) discard;
     imageAtomicAdd(covered, place, 1u);
+    if (alpha_mode != kOpaque && !is_opaque_at(bound.triangle, bound.triangle - first_triangle, hit.barycentrics, pixel,
+                                               index_of(packed_sample)))
+        discard;
     seen = uvec2(bound.triangle, floatBitsToUint(hit.depth));
     // Depths are below 1e12: divided by 2^41 they keep every bit and lie in [0, 1].
     gl_FragDepth = hit.depth * (1.0 / 2199023255552.0);

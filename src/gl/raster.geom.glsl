@@ -4,6 +4,7 @@
 
 #include "bound/facing.glsl"
 #include "bound/screen_bounds.glsl"
+#include "frame/opacity.glsl"
 
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 4) out;
@@ -67,7 +68,7 @@ void main() {
         m.z_q[i] = corner[i].z_open;
         m.z_r[i] = corner[i].z_close;
     }
-    if (!is_usable(m)) return;
+    if (!is_usable(m) || opacity_class(uint(gl_PrimitiveIDIn)) == kClear) return;
     ScreenBox bounds = screen_bounds(m);
     ivec4 pixels = covered_pixels(bounds, region);
     if (pixels.x >= pixels.y || pixels.z >= pixels.w) return;

@@ -7,10 +7,12 @@ namespace {
 
 constexpr GLuint kAtOpen = 0, kAtClose = 1, kDepthAtOpen = 2, kDepthAtClose = 3;
 
-glm::uvec4 packed(const SampleVector& samples, int lane) {
-    const auto place = [](float h) { return static_cast<std::uint32_t>((h + kCellSize / 2) * 256.0f); };  // exact
+// All of it is exact: see gl/samples.glsl.
+glm::uvec4 packed(const SampleVector& samples, int lane, std::uint32_t index) {
+    const auto place = [](float h) { return static_cast<std::uint32_t>((h + kCellSize / 2) * 256.0f); };
+    const std::uint32_t t = static_cast<std::uint32_t>(samples.t[lane] * 0x1p24f);
     return {std::bit_cast<std::uint32_t>(samples.u[lane]), std::bit_cast<std::uint32_t>(samples.v[lane]),
-            std::bit_cast<std::uint32_t>(samples.t[lane]), place(samples.x[lane]) | place(samples.y[lane]) << 16};
+            t << 8 | (index & 0xff), place(samples.x[lane]) | place(samples.y[lane]) << 14 | index >> 8 << 28};
 }
 
 }  // namespace
@@ -59,11 +61,15 @@ void SampleUpload::write(const SampleTable& table, const Region& region, int fir
     for (int cy = region.cell_y; cy < region.cell_y + region.cell_rows; ++cy)
         for (int cx = region.cell_x; cx < region.cell_x + region.cell_columns; ++cx) {
             const auto vectors = table.cell(cx, cy, room_);
-            for (int block = 0; block < kBlocksPerCell; ++block)
-                for (int slot = first; slot < first + count; ++slot)
+            for (int block = 0; block < kBlocksPerCell; ++block) {
+                const auto indices =
+                    table.indices(cx * kCellBlocks + block % kCellBlocks, cy * kCellBlocks + block / kCellBlocks);
+                for (int slot = first; slot < first + count; ++slot) {
+                    const SampleVector& samples = vectors[static_cast<std::size_t>(block) * table.slots() + slot];
                     for (int lane = 0; lane < kLanes; ++lane)
-                        packed_.push_back(
-                            packed(vectors[static_cast<std::size_t>(block) * table.slots() + slot], lane));
+                        packed_.push_back(packed(samples, lane, indices[slot * kLanes + lane]));
+                }
+            }
         }
     buffer_.write(0, packed_.size() * sizeof(glm::uvec4), packed_.data());
 }
