@@ -1,7 +1,8 @@
 #pragma once
 // Which samples of a tile are covered, by what, how far: fills the tile's Hits. Implementations with the same result,
-// bit for bit: one sample at a time with any culling test (the readable truth), vectors of sixteen samples, and still
-// triangles for samples that share lens position and time. Micropolygons are another model, the same up to rounding.
+// bit for bit: one sample at a time with any culling test (the readable truth), vectors of sixteen samples, those
+// of one pixel where nothing blurs, and still triangles for samples that share lens position and time. Micropolygons
+// are another model, the same up to rounding.
 
 #include <cstdint>
 #include <span>
@@ -55,6 +56,9 @@ void cover_with_test(const TileWork& work, const CullTest& test, Hits& hits, Cov
 
 /// The fast path of `--culling auto`, on the CPU target in use (base/cpu.h). Equals cover_with_test with any test.
 void cover_vectors(const TileWork& work, Hits& hits, CoverCounts& counts);
+
+/// The same where nothing blurs: the frame has no moving part and a pinhole, and SampleTable::by_pixel() is not empty.
+void cover_still(const TileWork& work, Hits& hits, CoverCounts& counts);
 
 /// For sample tables whose pattern is not SamplePattern::kFree: a triangle is placed and boxed once for each triple (u,
 /// v, t). `tested` counts the triple's samples in the box. Equals the two above.

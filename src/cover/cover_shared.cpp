@@ -21,6 +21,7 @@
 #include "base/cpu.h"
 #include "cover/cover.h"
 #include "cover/exact.h"
+#include "cover/front_to_back.h"
 #include "frame/opacity.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -289,22 +290,11 @@ void update_farthest(TileState& state) {
     state.farthest = hn::GetLane(hn::MaxOfLanes(f, farthest));
 }
 
-// No sample sees a triangle nearer than this; rounding may put a hit a few ulps in front of the nearest corner. An
-// orthographic w says nothing about depth.
-float nearest_depth(const TileWork& work, const BinnedTriangle& triangle) {
-    return work.frame.view.perspective ? triangle.nearest_w * (1.0f - 16.0f * 0x1p-24f) : -INFINITY;
-}
-
 void cover_front_to_back(TileState& state) {
     const TileWork& work = state.work;
-    std::vector<std::uint32_t> order(work.list.begin(), work.list.end());
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-        const float wa = nearest_depth(work, work.triangles[a]), wb = nearest_depth(work, work.triangles[b]);
-        return wa < wb || (wa == wb && a < b);
-    });
     constexpr int kBetweenUpdates = 32;
     int until_update = kBetweenUpdates;
-    for (const std::uint32_t entry : order) {
+    for (const std::uint32_t entry : front_to_back(work)) {
         const BinnedTriangle& binned = work.triangles[entry];
         if (nearest_depth(work, binned) > state.farthest) return;  // so are all that follow
         cover_triangle(state, binned);

@@ -21,6 +21,7 @@
 
 #include "base/cpu.h"
 #include "cover/cover.h"
+#include "cover/front_to_back.h"
 #include "cover/half_planes-inl.h"
 #include "cover/lanes-inl.h"
 #include "cover/vector_test-inl.h"
@@ -101,35 +102,15 @@ void update_tile_farthest(TileState& state) {
     state.tile_farthest = hn::GetLane(hn::MaxOfLanes(f, farthest));
 }
 
-// No sample sees the triangle at a smaller w. Rounding may put a hit a few ulps in front of the nearest vertex; an
-// orthographic w says nothing about depth.
-float nearest_depth(const TileWork& work, std::uint32_t entry) {
-    constexpr float kMargin = 1.0f - 16.0f * kUnitRoundoff;
-    return work.frame.view.perspective ? work.triangles[entry].nearest_w * kMargin : -INFINITY;
-}
-
-// The tile's triangles by their nearest w. As one number, the bits of the (positive) float above those of the place in
-// the list, they sort twice as fast.
-std::vector<std::uint64_t> front_to_back(const TileWork& work) {
-    std::vector<std::uint64_t> order;
-    order.reserve(work.list.size());
-    for (const std::uint32_t entry : work.list) {
-        const float nearest = work.frame.view.perspective ? work.triangles[entry].nearest_w : 0.0f;
-        order.push_back(std::uint64_t{std::bit_cast<std::uint32_t>(nearest)} << 32 | entry);
-    }
-    std::sort(order.begin(), order.end());
-    return order;
-}
-
 void cover_front_to_back(TileState& state) {
     constexpr int kBetweenUpdates = 16;
     const CullTest& camera_plane_test = *find_cull_test("improved-dual-space");
     int until_update = kBetweenUpdates;
-    for (const std::uint64_t next : front_to_back(state.work)) {
-        const std::uint32_t entry = static_cast<std::uint32_t>(next);
-        const float nearest = nearest_depth(state.work, entry);
+    for (const std::uint32_t entry : front_to_back(state.work)) {
+        const BinnedTriangle& binned = state.work.triangles[entry];
+        const float nearest = nearest_depth(state.work, binned);
         if (nearest > state.tile_farthest) return;  // so are all that follow
-        cover_triangle(state, state.work.triangles[entry], nearest, camera_plane_test);
+        cover_triangle(state, binned, nearest, camera_plane_test);
         if (--until_update == 0) {
             update_tile_farthest(state);
             until_update = kBetweenUpdates;

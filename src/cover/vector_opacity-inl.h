@@ -88,47 +88,47 @@ HWY_INLINE Vec texture_alpha(F f, const OpacityTerms& terms, Vec s, Vec t, std::
     return hn::Mul(between(above, below, share_y), hn::Set(f, 1.0f / 255.0f));
 }
 
+// Which sample of the picture stands in a lane. Functions below take it from `sample_of(k)`, k: the lane of the Vec.
+struct SampleOfPixel {
+    int px, py, index;
+};
+
 // Of the lanes in `ask`, those of a blended surface that are there.
-HWY_NOINLINE Mask exceeds_threshold(F f, const TileState& state, std::uint32_t triangle, Vec alpha, int lane, Job job,
-                                    Mask ask) {
+template <class SampleOf>
+HWY_NOINLINE Mask exceeds_threshold(F f, const TileWork& work, std::uint32_t triangle, Vec alpha, Mask ask,
+                                    const SampleOf& sample_of) {
     HWY_ALIGN float threshold[kLanes] = {};
     const Mask open = hn::And(ask, hn::And(hn::Gt(alpha, hn::Zero(f)), hn::Lt(alpha, hn::Set(f, 1.0f))));
-    const int block = static_cast<int>(job) % kBlocksPerCell, slot = static_cast<int>(job) / kBlocksPerCell;
-    const int bx = state.work.tile.cell_x() * kCellBlocks + block % kCellBlocks,
-              by = state.work.tile.cell_y() * kCellBlocks + block / kCellBlocks;
-    const std::uint16_t* indices = &state.work.samples.indices(bx, by)[static_cast<std::size_t>(slot) * kLanes + lane];
     for (std::uint64_t m = bits_of(f, open); m != 0; m &= m - 1) {
         const int k = std::countr_zero(m);
-        const int px = bx * kBlockSize + (lane + k) % kBlockSize, py = by * kBlockSize + (lane + k) / kBlockSize;
-        threshold[k] = opacity_threshold(triangle, px, py, indices[k], state.work.samples.spp());
+        const SampleOfPixel s = sample_of(k);
+        threshold[k] = opacity_threshold(triangle, s.px, s.py, s.index, work.samples.spp());
     }
     return hn::And(ask, hn::Gt(alpha, hn::Load(f, threshold)));  // thresholds are in [0, 1): 0 and 1 need no asking
 }
 
 // Glass is rare: lane by lane.
-HWY_NOINLINE Mask decide_glass(F f, const TileState& state, std::uint32_t triangle, const Vec b[3], int lane, Job job,
-                               Mask hit) {
+template <class SampleOf>
+HWY_NOINLINE Mask decide_glass(F f, const TileWork& work, std::uint32_t triangle, const Vec b[3], Mask hit,
+                               const SampleOf& sample_of) {
     HWY_ALIGN float barycentrics[3][kLanes];
     HWY_ALIGN float there[kLanes] = {};
     for (int i = 0; i < 3; ++i) hn::Store(b[i], f, barycentrics[i]);
-    const int block = static_cast<int>(job) % kBlocksPerCell, slot = static_cast<int>(job) / kBlocksPerCell;
-    const int bx = state.work.tile.cell_x() * kCellBlocks + block % kCellBlocks,
-              by = state.work.tile.cell_y() * kCellBlocks + block / kCellBlocks;
-    const std::uint16_t* indices = &state.work.samples.indices(bx, by)[static_cast<std::size_t>(slot) * kLanes + lane];
     for (std::uint64_t m = bits_of(f, hit); m != 0; m &= m - 1) {
         const int k = std::countr_zero(m);
-        const int px = bx * kBlockSize + (lane + k) % kBlockSize, py = by * kBlockSize + (lane + k) / kBlockSize;
         const float at[3] = {barycentrics[0][k], barycentrics[1][k], barycentrics[2][k]};
-        there[k] = is_opaque_at(state.work.frame, triangle, at, px, py, indices[k], state.work.samples.spp()) ? 1 : 0;
+        const SampleOfPixel s = sample_of(k);
+        there[k] = is_opaque_at(work.frame, triangle, at, s.px, s.py, s.index, work.samples.spp()) ? 1 : 0;
     }
     return hn::And(hit, hn::Gt(hn::Load(f, there), hn::Zero(f)));
 }
 
 // The lanes of `hit` whose surface is really there. `edges`, `sum`: barycentric coordinates times their sum.
-HWY_NOINLINE Mask decide_opacity(F f, const TileState& state, const LocalTriangle& T, const OpacityTerms& terms,
-                                 const Vec edges[3], Vec sum, int lane, Job job, Mask hit) {
+template <class SampleOf>
+HWY_NOINLINE Mask decide_opacity(F f, const TileWork& work, std::uint32_t triangle, const OpacityTerms& terms,
+                                 const Vec edges[3], Vec sum, Mask hit, const SampleOf& sample_of) {
     const Vec b[3] = {hn::Div(edges[0], sum), hn::Div(edges[1], sum), hn::Div(edges[2], sum)};
-    if (terms.glass) return decide_glass(f, state, T.triangle, b, lane, job, hit);
+    if (terms.glass) return decide_glass(f, work, triangle, b, hit, sample_of);
     Vec alpha = hn::Set(f, terms.factor);
     if (terms.colored) alpha = hn::Mul(alpha, mixed(f, b, terms.color[0], terms.color[1], terms.color[2]));
     if (terms.texture == nullptr) {
@@ -151,7 +151,7 @@ HWY_NOINLINE Mask decide_opacity(F f, const TileState& state, const LocalTriangl
         alpha = hn::Mul(alpha, texture_alpha(f, terms, s, t, bits_of(f, hit)));
     }
     if (terms.mode == AlphaMode::kMask) return hn::And(hit, hn::Ge(alpha, hn::Set(f, terms.cutoff)));
-    return exceeds_threshold(f, state, T.triangle, alpha, lane, job, hit);
+    return exceeds_threshold(f, work, triangle, alpha, hit, sample_of);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -143,8 +143,8 @@ HWY_INLINE Decision decide(F f, const Deltas& D, const Edges& E) {
 }
 
 // What the scalar test says of the lanes in `tied`; returns those it accepts, with their depth.
-HWY_NOINLINE Mask decide_ties(F f, const TileState& state, const LocalTriangle& T, const SampleVector& s, int lane,
-                              Mask tied, Vec& depth) {
+HWY_NOINLINE inline Mask decide_ties(F f, const CellCentre& centre, const LocalTriangle& T, const SampleVector& s,
+                                     int lane, Mask tied, Vec& depth) {
     HWY_ALIGN std::int32_t ask[kLanes];
     HWY_ALIGN float depths[kLanes];
     const I i;
@@ -153,7 +153,7 @@ HWY_NOINLINE Mask decide_ties(F f, const TileState& state, const LocalTriangle& 
     for (int k = 0; k < kWidth; ++k) {
         if (ask[k] == 0) continue;
         const LocalSample sample{s.x[lane + k], s.y[lane + k], s.u[lane + k], s.v[lane + k], s.t[lane + k]};
-        const SampleHit hit = cover_sample(T, sample, state.centre);
+        const SampleHit hit = cover_sample(T, sample, centre);
         ask[k] = hit.hit ? -1 : 0;
         if (hit.hit) depths[k] = hit.depth;
     }
@@ -162,9 +162,8 @@ HWY_NOINLINE Mask decide_ties(F f, const TileState& state, const LocalTriangle& 
 }
 
 // Lanes within the screen bounds of a triangle that reaches the camera plane.
-HWY_INLINE Mask in_box(F f, const TileState& state, const LocalTriangle& T, const SampleVector& s, int lane) {
-    const Vec gx = hn::Add(hn::Set(f, state.centre.x), hn::Load(f, s.x + lane));
-    const Vec gy = hn::Add(hn::Set(f, state.centre.y), hn::Load(f, s.y + lane));
+HWY_INLINE Mask in_box(F f, const CellCentre& centre, const LocalTriangle& T, Vec hx, Vec hy) {
+    const Vec gx = hn::Add(hn::Set(f, centre.x), hx), gy = hn::Add(hn::Set(f, centre.y), hy);
     return hn::And(hn::And(hn::Ge(gx, hn::Set(f, T.box[0])), hn::Le(gx, hn::Set(f, T.box[1]))),
                    hn::And(hn::Ge(gy, hn::Set(f, T.box[2])), hn::Le(gy, hn::Set(f, T.box[3]))));
 }
@@ -180,6 +179,25 @@ inline bool may_leave_depth_range(const LocalTriangle& T) {
     }
     return !within;
 }
+
+// The samples in the lanes of a job, from `lane` on.
+class LanesOfJob {
+  public:
+    LanesOfJob(const TileState& state, Job job, int lane)
+        : lane_(lane),
+          bx_(state.work.tile.cell_x() * kCellBlocks + static_cast<int>(job) % kCellBlocks),
+          by_(state.work.tile.cell_y() * kCellBlocks + static_cast<int>(job) % kBlocksPerCell / kCellBlocks),
+          indices_(state.work.samples.indices(bx_, by_).subspan(std::size_t{job} / kBlocksPerCell * kLanes, kLanes)) {}
+
+    SampleOfPixel operator()(int k) const {
+        const int lane = lane_ + k;
+        return {bx_ * kBlockSize + lane % kBlockSize, by_ * kBlockSize + lane / kBlockSize, indices_[lane]};
+    }
+
+  private:
+    int lane_, bx_, by_;
+    std::span<const std::uint16_t> indices_;
+};
 
 // Pass 2: the exact test, depth, opacity and writes.
 template <class K>
@@ -204,7 +222,8 @@ void write_hits(TileState& state, const LocalTriangle& T, std::size_t count) {
             const Edges E = edges(D);
             const Decision decision = decide<K>(f, D, E);
             Mask hit = decision.inside;
-            if (T.behind) hit = hn::And(hit, in_box(f, state, T, s, lane));
+            if (T.behind)
+                hit = hn::And(hit, in_box(f, state.centre, T, hn::Load(f, s.x + lane), hn::Load(f, s.y + lane)));
             const Vec sum = hn::Add(hn::Add(E.e[0], E.e[1]), E.e[2]);
             Vec depth = hn::Add(hn::Add(hn::Mul(E.e[0], D.z[0]), hn::Mul(E.e[1], D.z[1])), hn::Mul(E.e[2], D.z[2]));
             depth = hn::Div(depth, sum);
@@ -213,7 +232,7 @@ void write_hits(TileState& state, const LocalTriangle& T, std::size_t count) {
             if (ask_range)
                 hit = hn::And(hit, hn::And(hn::Ge(depth, hn::Set(f, T.z_near)), hn::Le(depth, hn::Set(f, T.z_far))));
             if (HWY_UNLIKELY(!hn::AllFalse(f, decision.tied)))
-                hit = hn::Or(hit, decide_ties(f, state, T, s, lane, decision.tied, depth));
+                hit = hn::Or(hit, decide_ties(f, state.centre, T, s, lane, decision.tied, depth));
             covered += static_cast<std::int64_t>(hn::CountTrue(f, hit));
             const Vec stored = hn::Load(f, depths + lane);
             const auto stored_triangle = hn::Load(u, triangles + lane);
@@ -225,7 +244,7 @@ void write_hits(TileState& state, const LocalTriangle& T, std::size_t count) {
                 hit = hn::Or(hit, hn::And(equal, lower));
             }
             if (T.alpha_tested && !hn::AllFalse(f, hit))
-                hit = decide_opacity(f, state, T, terms, E.e, sum, lane, job, hit);
+                hit = decide_opacity(f, state.work, T.triangle, terms, E.e, sum, hit, LanesOfJob(state, job, lane));
             const Vec nearest = hn::IfThenElse(hit, depth, stored);
             hn::Store(nearest, f, depths + lane);
             hn::Store(hn::IfThenElse(hn::RebindMask(u, hit), triangle, stored_triangle), u, triangles + lane);

@@ -131,8 +131,8 @@ HWY_INLINE std::uint64_t for_blocks(Condition condition) {
 }
 
 // Blocks beyond an edge, over all of a stratum, are refused: for triangles that fill many blocks.
-HWY_NOINLINE void refuse_blocks_by_edges(const TileState& state, const HalfPlanes& H, const StratumLimits& limits,
-                                         std::uint64_t* masks) {
+HWY_NOINLINE inline void refuse_blocks_by_edges(const TileState& state, const HalfPlanes& H,
+                                                const StratumLimits& limits, std::uint64_t* masks) {
     const F f;
     HWY_ALIGN float least[3][kBlocksPerCell];  // n.h of the block's corner that lies deepest inside
     for (int k = 0; k < 3; ++k) {
@@ -174,7 +174,8 @@ inline std::uint64_t blocks_at_camera_plane(const LocalTriangle& T, const CullTe
 
 // The vectors (block, slot) of the masks that are not hidden, slot by slot. How many bits a mask has is unpredictable,
 // so bits are written out eight at a time, wanted or not.
-HWY_NOINLINE std::size_t list_jobs(TileState& state, const std::uint64_t* masks, std::uint64_t blocks, float nearest) {
+HWY_NOINLINE inline std::size_t list_jobs(TileState& state, const std::uint64_t* masks, std::uint64_t blocks,
+                                          float nearest) {
     const F f;
     const Vec near = hn::Set(f, nearest);
     Job* HWY_RESTRICT jobs = state.jobs.data();

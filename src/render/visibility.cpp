@@ -35,6 +35,7 @@ Visibility::Visibility(const Frame& frame, const SampleTable& samples, const Met
     : frame_(frame),
       samples_(samples),
       method_(method.visibility),
+      by_pixel_(grouping_for(frame) == Grouping::kStill && !samples.by_pixel(0, 0).x.empty()),
       culling_(method.culling == "auto" ? Culling() : parse_culling(method.culling)) {
     if (method.backend == Backend::kGl)
         rasterizer_ = make_gl_rasterizer(frame, samples, method.culling, limits);
@@ -59,6 +60,8 @@ void Visibility::cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverM
         cover_with_test(work, culling_, hits, counts);
     else if (samples_.pattern() != SamplePattern::kFree)
         cover_shared(work, hits, counts);
+    else if (by_pixel_)
+        cover_still(work, hits, counts);
     else
         cover_vectors(work, hits, counts);
 }

@@ -35,6 +35,7 @@ class Visibility {
     const Frame& frame_;
     const SampleTable& samples_;
     VisibilityMethod method_;
+    bool by_pixel_;    ///< nothing blurs, and the samples are arranged for that
     Culling culling_;  ///< empty: the fast path
     std::optional<Bins> bins_;
     std::unique_ptr<const Tracer> tracer_;

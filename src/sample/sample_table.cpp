@@ -131,6 +131,7 @@ int stratum_of(Grouping grouping, int spp, std::uint32_t base_u, std::uint32_t b
 }
 
 constexpr int kMaxStrata = 64;
+constexpr int kMostByPixel = 256;  // samples per pixel: with more, a tile by pixel is megabytes
 
 int stratum_count(Grouping grouping, int spp) {
     switch (grouping) {
@@ -232,7 +233,30 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
             strata_[cell].push_back(
                 {static_cast<std::uint16_t>(key.first), static_cast<std::uint16_t>(key.second), blocks_mask});
     }
-    if (shared) arrange_by_triple(*shared);
+    if (shared)
+        arrange_by_triple(*shared);
+    else if (grouping == Grouping::kStill && spp % kLanes == 0 && spp <= kMostByPixel)
+        arrange_by_pixel();
+}
+
+// Where nothing blurs, slots are in the order of indices.
+void SampleTable::arrange_by_pixel() {
+    pixel_x_.resize(vectors_.size() * kLanes);
+    pixel_y_.resize(vectors_.size() * kLanes);
+    const std::size_t spp = static_cast<std::size_t>(spp_);
+    for (std::size_t i = 0; i < vectors_.size(); ++i)
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            const std::size_t to = (i / spp * kLanes + lane) * spp + i % spp;
+            pixel_x_[to] = vectors_[i].x[lane];
+            pixel_y_[to] = vectors_[i].y[lane];
+        }
+}
+
+PixelSamples SampleTable::by_pixel(int cx, int cy) const {
+    if (pixel_x_.empty()) return {};
+    const std::size_t per_cell = std::size_t{kCellSize} * kCellSize * spp_, first = cell_index(cx, cy) * per_cell;
+    return {std::span<const float>(pixel_x_.data(), pixel_x_.size()).subspan(first, per_cell),
+            std::span<const float>(pixel_y_.data(), pixel_y_.size()).subspan(first, per_cell)};
 }
 
 void SampleTable::arrange_by_triple(const SharedTriples& shared) {

@@ -54,6 +54,12 @@ struct SharedSamples {
     std::span<const std::uint32_t> place;
 };
 
+/// The samples of a cell pixel by pixel, for pictures in which nothing blurs: [(block * kLanes + lane) * spp + index],
+/// block and lane as in SampleVector; x, y as there, each pixel's on cache lines of its own.
+struct PixelSamples {
+    std::span<const float> x, y;
+};
+
 class SampleTable {
   public:
     /// Cost and memory: period^2 * spp * 20 bytes, at most about 90 MB; shared patterns 12 bytes a sample more. These
@@ -102,11 +108,16 @@ class SampleTable {
     /// Of a pattern that is not kFree.
     SharedSamples shared(int cx, int cy) const;
 
+    /// Only for Grouping::kStill, free patterns and 16, 32, ... 256 samples per pixel; else empty. Costs 8 bytes a
+    /// sample.
+    PixelSamples by_pixel(int cx, int cy) const;
+
   private:
     void roll(std::span<SampleVector> vectors, int cx, int cy) const;
     std::size_t cell_index(int cx, int cy) const;
     std::size_t block_index(int bx, int by) const;
     void arrange_by_triple(const SharedTriples& shared);
+    void arrange_by_pixel();
 
     int spp_, period_;
     std::uint32_t seed_;
@@ -123,6 +134,7 @@ class SampleTable {
     std::vector<SharedSamples::Triple> triples_;
     AlignedVector<float> shared_x_, shared_y_;
     std::vector<std::uint32_t> shared_places_;
+    AlignedVector<float> pixel_x_, pixel_y_;  // [cell of the period], then as in PixelSamples
 };
 
 }  // namespace pentaprism

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <numbers>
 #include <optional>
 
 #include "frame/opacity.h"
@@ -72,7 +71,15 @@ void ShadedTriangle::project(std::uint32_t triangle) {
         projection_.coc[i] = between(middle.c[i]);
         projection_.motion[i] = glm::dvec3(last.x[i][1], last.y[i][1], last.w[i][1]) -
                                 glm::dvec3(first.x[i][0], first.y[i][0], first.w[i][0]);
+        cells_.x[i] = static_cast<float>(corner[i].x);
+        cells_.y[i] = static_cast<float>(corner[i].y);
+        cells_.w[i] = static_cast<float>(corner[i].z);
+        cells_.coc[i] = static_cast<float>(projection_.coc[i]);
+        cells_.motion_x[i] = static_cast<float>(projection_.motion[i].x);
+        cells_.motion_y[i] = static_cast<float>(projection_.motion[i].y);
+        cells_.motion_w[i] = static_cast<float>(projection_.motion[i].z);
     }
+    cells_.w_near = static_cast<float>(frame.view.w_near());
     const glm::dvec3 rows[3] = {glm::cross(corner[1], corner[2]), glm::cross(corner[2], corner[0]),
                                 glm::cross(corner[0], corner[1])};
     const double determinant = glm::dot(corner[0], rows[0]);
@@ -119,52 +126,30 @@ TextureFootprint ShadedTriangle::footprint(const glm::vec3& barycentrics, int se
     return footprint;
 }
 
-ShadingCell ShadedTriangle::cell_of(const glm::vec3& barycentrics) const {
-    constexpr double kBlurShare = 0.25;
-    constexpr int kCoarsest = 6, kDirections = 16;
-    const glm::dvec3 b(barycentrics);
-    const glm::dvec3* corner = projection_.corner;
-    const glm::dvec3 point = b.x * corner[0] + b.y * corner[1] + b.z * corner[2];
-    if (!(point.z >= scene_.frame().view.w_near())) return {};
-    const glm::dvec2 place = glm::dvec2(point) / point.z;
-    if (!(std::max(std::abs(place.x), std::abs(place.y)) < 32768.0)) return {};
-    const glm::dvec3 motion = b.x * projection_.motion[0] + b.y * projection_.motion[1] + b.z * projection_.motion[2];
-    const glm::dvec2 velocity = (glm::dvec2(motion) - motion.z * place) / point.z;
-    const double coc = glm::dot(b, projection_.coc) / point.z, lens2 = 3.0 * coc * coc;
-    // floor(log2(share * length)), from the squared length.
-    const auto level = [kMost = kCoarsest](double length2) {
-        const double cells2 = kBlurShare * kBlurShare * length2;
-        return cells2 >= 4.0 && std::isfinite(cells2) ? std::min(std::ilogb(cells2) / 2, kMost) : 0;
-    };
-    const int longer = level(glm::dot(velocity, velocity) + lens2), shorter = level(lens2);
-    int direction = 0;
-    if (longer != shorter) {
-        const double turn = std::atan2(velocity.y, velocity.x) / std::numbers::pi * kDirections;
-        direction = (static_cast<int>(std::lround(turn)) + 2 * kDirections) % kDirections;
-    }
-    const double angle = std::numbers::pi * direction / kDirections;
-    const double c = direction == 0 ? 1.0 : std::cos(angle), sine = direction == 0 ? 0.0 : std::sin(angle);
-    const double width = std::ldexp(1.0, longer), height = std::ldexp(1.0, shorter);
-    const double column = std::floor((c * place.x + sine * place.y) / width);
-    const double row = std::floor((c * place.y - sine * place.x) / height);
-    ShadingCell cell;
-    const auto bits = [](double x) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(x) + (1 << 20)); };
-    cell.key = (std::uint64_t{1} << 62) | (static_cast<std::uint64_t>(direction) << 52) |
-               (static_cast<std::uint64_t>(longer) << 49) | (static_cast<std::uint64_t>(shorter) << 46) |
-               (bits(column) << 22) | bits(row);
-    const double x = (column + 0.5) * width, y = (row + 0.5) * height;
-    cell.centre = {c * x - sine * y, sine * x + c * y};
-    cell.along = glm::vec2(c * width, sine * width);
-    cell.across = glm::vec2(-sine * height, c * height);
-    return cell;
+namespace {
+
+// From barycentrics over w, up to a factor: moved into the triangle, with sum 1.
+glm::vec3 inside(const glm::dvec3& over_w) {
+    const double sum = over_w.x + over_w.y + over_w.z;
+    const glm::dvec3 kept = glm::max(sum < 0.0 ? -over_w : over_w, glm::dvec3(0.0));
+    const double total = kept.x + kept.y + kept.z;
+    return total > 0.0 && std::isfinite(total) ? glm::vec3((1.0 / total) * kept) : glm::vec3(1.0f / 3.0f);
 }
 
+}  // namespace
+
 glm::vec3 ShadedTriangle::barycentrics_at(const glm::dvec2& place) const {
-    const glm::dvec3 over_w = projection_.by_x * place.x + projection_.by_y * place.y + projection_.by_1;
-    const double sum = over_w.x + over_w.y + over_w.z;
-    const glm::dvec3 b = glm::max(over_w / sum, glm::dvec3(0.0));
-    const double total = b.x + b.y + b.z;
-    return total > 0.0 && std::isfinite(total) ? glm::vec3(b / total) : glm::vec3(1.0f / 3.0f);
+    return inside(projection_.by_x * place.x + projection_.by_y * place.y + projection_.by_1);
+}
+
+void ShadedTriangle::barycentrics_of_quarters(const ShadingCell& cell, glm::vec3 out[4]) const {
+    const auto change = [&](const glm::dvec2& way) { return projection_.by_x * way.x + projection_.by_y * way.y; };
+    const glm::dvec3 middle = change(cell.centre) + projection_.by_1;
+    const glm::dvec3 along = change(0.25 * glm::dvec2(cell.along)), across = change(0.25 * glm::dvec2(cell.across));
+    out[0] = inside(middle - along - across);
+    out[1] = inside(middle + along - across);
+    out[2] = inside(middle - along + across);
+    out[3] = inside(middle + along + across);
 }
 
 // How far the smooth surface bulges out over the facet, along the smooth normal: a parabola over each edge that follows

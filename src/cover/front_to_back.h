@@ -1,0 +1,17 @@
+#pragma once
+// The order in which a tile's triangles are walked, so that what is hidden is met late and refused early.
+
+#include <cstdint>
+#include <vector>
+
+#include "cover/cover.h"
+
+namespace pentaprism {
+
+/// No sample sees the triangle at a smaller depth; -infinity in orthographic views, whose w says nothing about depth.
+float nearest_depth(const TileWork& work, const BinnedTriangle& triangle);
+
+/// The tile's triangles by their nearest w: indices into TileWork::triangles.
+std::vector<std::uint32_t> front_to_back(const TileWork& work);
+
+}  // namespace pentaprism

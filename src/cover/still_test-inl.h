@@ -1,0 +1,147 @@
+// The exact test of a pixel's samples against a still triangle of a batch, the same decisions as cover/exact.cpp bit
+// for bit, with depth, opacity and writes. Sixteen samples of one pixel stand in the lanes.
+
+#if defined(PENTAPRISM_COVER_STILL_TEST_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef PENTAPRISM_COVER_STILL_TEST_INL_H
+#undef PENTAPRISM_COVER_STILL_TEST_INL_H
+#else
+#define PENTAPRISM_COVER_STILL_TEST_INL_H
+#endif
+
+#include <cmath>
+
+#include "cover/still_batch-inl.h"
+#include "cover/vector_test-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pentaprism {
+namespace HWY_NAMESPACE {
+
+// The tile's samples and hits, pixel by pixel as in PixelSamples.
+struct StillTile {
+    StillTile(const TileWork& w, const PixelSamples& s)
+        : work(w),
+          samples(s),
+          centre(cell_centre(w.frame.view, w.tile.cell_x(), w.tile.cell_y())),
+          spp(static_cast<std::size_t>(w.samples.spp())),
+          depth(s.x.size(), INFINITY),
+          triangle(s.x.size(), kNoTriangle),
+          farthest(kPixels, INFINITY) {}
+
+    static constexpr int kPixels = kBlocksPerCell * kLanes;
+    const TileWork& work;
+    PixelSamples samples;
+    CellCentre centre;
+    std::size_t spp;
+    AlignedVector<float> depth;  // -infinity outside the tile: nothing is nearer
+    AlignedVector<std::uint32_t> triangle;
+    AlignedVector<float> farthest;   // by pixel: largest depth stored so far
+    float tile_farthest = INFINITY;  // no smaller than any of `farthest`
+    std::int64_t tested = 0, covered = 0;
+};
+
+// What a special triangle is asked beyond the edges.
+struct SpecialTriangle {
+    LocalTriangle T;
+    OpacityTerms terms;
+    bool ask_range;
+};
+
+// What the scalar test says of the lanes in `tied`.
+HWY_NOINLINE inline Mask settle_ties(F f, const StillTile& tile, const BinnedTriangle& binned, std::size_t at,
+                                     Mask tied, Vec& depth) {
+    const LocalTriangle T = localize(tile.work.frame, binned.triangle, binned.segment, tile.centre, tile.work.scale);
+    SampleVector s{};  // u, v, t: nothing blurs
+    std::copy_n(&tile.samples.x[at], kWidth, s.x);
+    std::copy_n(&tile.samples.y[at], kWidth, s.y);
+    return decide_ties(f, tile.centre, T, s, 0, tied, depth);
+}
+
+// The samples of a pixel in the lanes.
+struct LanesOfPixel {
+    int px, py, first;
+    SampleOfPixel operator()(int k) const { return {px, py, first + k}; }
+};
+
+// Lanes of `hit` within the distances and the bounds of a triangle that reaches the camera plane.
+HWY_NOINLINE inline Mask decide_bounds(F f, const StillTile& tile, const SpecialTriangle& special, Vec depth,
+                                       std::size_t at, Mask hit) {
+    const LocalTriangle& T = special.T;
+    if (T.behind)
+        hit =
+            hn::And(hit, in_box(f, tile.centre, T, hn::Load(f, &tile.samples.x[at]), hn::Load(f, &tile.samples.y[at])));
+    if (special.ask_range)
+        hit = hn::And(hit, hn::And(hn::Ge(depth, hn::Set(f, T.z_near)), hn::Le(depth, hn::Set(f, T.z_far))));
+    return hit;
+}
+
+HWY_NOINLINE inline Mask decide_alpha(F f, const StillTile& tile, const SpecialTriangle& special, const Vec e[3],
+                                      Vec sum, std::size_t at, Mask hit) {
+    const int pixel = static_cast<int>(at / tile.spp), block = pixel / kLanes, lane = pixel % kLanes;
+    const Tile& place = tile.work.tile;
+    const LanesOfPixel lanes{place.cell_x() * kCellSize + block % kCellBlocks * kBlockSize + lane % kBlockSize,
+                             place.cell_y() * kCellSize + block / kCellBlocks * kBlockSize + lane / kBlockSize,
+                             static_cast<int>(at % tile.spp)};
+    return decide_opacity(f, tile.work, special.T.triangle, special.terms, e, sum, hit, lanes);
+}
+
+// Samples [at, at + kWidth) of a pixel. Returns the depths they show now. `special`: of a triangle that is not, unused.
+template <bool kSpecial>
+HWY_INLINE Vec cover_lanes(F f, StillTile& tile, const StillBatch& batch, int k, std::size_t at,
+                           const SpecialTriangle* special) {
+    const U u;
+    const Vec hx = hn::Load(f, &tile.samples.x[at]), hy = hn::Load(f, &tile.samples.y[at]), zero = hn::Zero(f);
+    Deltas D;
+    for (int i = 0; i < 3; ++i) {
+        D.x[i] = hn::NegMulAdd(hx, hn::Set(f, batch.w[i][k]), hn::Set(f, batch.x[i][k]));
+        D.y[i] = hn::NegMulAdd(hy, hn::Set(f, batch.signed_w[i][k]), hn::Set(f, batch.y[i][k]));
+        D.z[i] = hn::Set(f, batch.z[i][k]);
+    }
+    const Edges E = edges(D);
+    const Vec least = hn::Min(hn::Min(E.e[0], E.e[1]), E.e[2]);
+    Mask hit = hn::Gt(least, zero);
+    const Mask tied = hn::Eq(least, zero);
+    const Vec sum = hn::Add(hn::Add(E.e[0], E.e[1]), E.e[2]);
+    Vec depth = hn::Add(hn::Add(hn::Mul(E.e[0], D.z[0]), hn::Mul(E.e[1], D.z[1])), hn::Mul(E.e[2], D.z[2]));
+    depth = hn::Min(hn::Max(hn::Div(depth, sum), hn::Set(f, batch.least_z[k])), hn::Set(f, batch.most_z[k]));
+    if constexpr (kSpecial) hit = decide_bounds(f, tile, *special, depth, at, hit);
+    if (HWY_UNLIKELY(!hn::AllFalse(f, tied)))
+        hit = hn::Or(hit, settle_ties(f, tile, *batch.binned[k], at, tied, depth));
+    tile.covered += static_cast<std::int64_t>(hn::CountTrue(f, hit));
+
+    const Vec stored = hn::Load(f, &tile.depth[at]);
+    const auto triangle = hn::Set(u, batch.triangle[k]), stored_triangle = hn::Load(u, &tile.triangle[at]);
+    const Mask equal = hn::And(hit, hn::Eq(depth, stored));
+    hit = hn::And(hit, hn::Lt(depth, stored));
+    if (HWY_UNLIKELY(!hn::AllFalse(f, equal))) {
+        const auto lower = hn::Lt(hn::BitCast(I(), triangle), hn::BitCast(I(), stored_triangle));
+        hit = hn::Or(hit, hn::And(equal, hn::RebindMask(f, lower)));
+    }
+    if constexpr (kSpecial)
+        if (special->T.alpha_tested && !hn::AllFalse(f, hit)) hit = decide_alpha(f, tile, *special, E.e, sum, at, hit);
+    const Vec nearest = hn::IfThenElse(hit, depth, stored);
+    hn::Store(nearest, f, &tile.depth[at]);
+    hn::Store(hn::IfThenElse(hn::RebindMask(u, hit), triangle, stored_triangle), u, &tile.triangle[at]);
+    return nearest;
+}
+
+template <bool kSpecial>
+void cover_pixels(StillTile& tile, const StillBatch& batch, const std::uint32_t* jobs, std::size_t count,
+                  const SpecialTriangle* special) {
+    const F f;
+    for (std::size_t j = 0; j < count; ++j) {
+        const int k = static_cast<int>(jobs[j] >> 16);
+        const std::size_t pixel = jobs[j] & 0xffff;
+        Vec farthest = hn::Set(f, -INFINITY);
+        for (std::size_t at = pixel * tile.spp; at < (pixel + 1) * tile.spp; at += kWidth)
+            farthest = hn::Max(farthest, cover_lanes<kSpecial>(f, tile, batch, k, at, special));
+        tile.farthest[pixel] = hn::GetLane(hn::MaxOfLanes(f, farthest));
+    }
+    tile.tested += static_cast<std::int64_t>(count * tile.spp);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace pentaprism
+HWY_AFTER_NAMESPACE();
+
+#endif
