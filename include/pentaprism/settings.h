@@ -125,8 +125,16 @@ enum class Sampler : std::uint8_t {
     kIndependent  ///< random, for comparison
 };
 
+/// What finds the visible surface of each sample; shading and film are the processor's in both cases.
+enum class Backend {
+    kCpu,
+    kGl  ///< OpenGL 4.5, with the samples and the exact test of kCpu; Error(kBackend) without a driver or in a build
+         ///< without it. Of the visibility methods those that rasterize whole triangles
+};
+
 struct MethodSettings {
     VisibilityMethod visibility = VisibilityMethod::kStochastic;
+    Backend backend = Backend::kCpu;
     /// "auto" or a combination of culling_tests(); kRaytrace and kMicropolygon have no use for one: "auto" alone.
     std::string culling = "auto";
     std::string shading = "decoupled";  ///< how often visible surfaces are shaded

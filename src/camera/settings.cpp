@@ -162,6 +162,8 @@ void check(const MethodSettings& method) {
         refuse(fmt::format("--culling {}: --visibility {} has no use for it; leave one of them out", method.culling,
                            name_of(method.visibility)));
     }
+    if (!culls && method.backend == Backend::kGl)
+        refuse(fmt::format("--backend gl: --visibility {} is the processor's alone", name_of(method.visibility)));
     if (method.shading != "pixel" && method.shading != "sample" && method.shading != "decoupled")
         refuse(fmt::format("--shading: '{}' is not pixel, sample or decoupled", method.shading));
     check_whole("--threads", method.threads, 0, 1024);

@@ -19,20 +19,6 @@ bool ends_with(const std::string& text, const std::string& end) {
     return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/// An option of which one value is built and others are planned.
-void add_partly_built(CLI::App& command, const std::string& group, const std::string& name,
-                      const std::string& description, const std::string& built, std::vector<std::string> planned) {
-    std::string form = built;
-    for (const std::string& value : planned) form += "|" + value;
-    add_value(command, group, name, form, description + " (only " + built + " is built)", [=](const std::string& text) {
-        if (text == built) return;
-        for (const std::string& value : planned) {
-            if (value == text) refuse_as_planned(name + " " + text);
-        }
-        throw Error(ErrorKind::kUsage, fmt::format("{}: '{}' is not one of {}", name, text, form));
-    });
-}
-
 void add_image_options(CLI::App& command, ImageSettings& image) {
     const std::string group = "Image";
     add_value(command, group, "-r,--resolution", "WxH", "Size in pixels, 1 to 16384 (default 1280x720)",
@@ -224,7 +210,11 @@ void add_method_options(CLI::App& command, MethodSettings& method) {
                                                       {"raytrace", VisibilityMethod::kRaytrace},
                                                       {"micropolygon", VisibilityMethod::kMicropolygon}});
               });
-    add_partly_built(command, group, "--backend", "What computes", "cpu", {"gl"});
+    add_value(
+        command, group, "--backend", "cpu|gl",
+        "What finds visible surfaces: the processor, or OpenGL 4.5 (default cpu)", [&](const std::string& text) {
+            method.backend = parse_choice<Backend>("--backend", text, {{"cpu", Backend::kCpu}, {"gl", Backend::kGl}});
+        });
     add_value(command, group, "--shading", "pixel|sample|decoupled",
               "How often visible surfaces are shaded (default decoupled)", [&](const std::string& text) {
                   method.shading = parse_choice<std::string>(

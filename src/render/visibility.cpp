@@ -52,7 +52,9 @@ Visibility::Visibility(const Frame& frame, const SampleTable& samples, const Met
       method_(method.visibility),
       by_pixel_(grouping_for(frame) == Grouping::kStill && !samples.by_pixel(0, 0).x.empty()),
       culling_(method.culling == "auto" ? Culling() : parse_culling(method.culling)) {
-    if (method_ == VisibilityMethod::kRaytrace)
+    if (method.backend == Backend::kGl)
+        rasterizer_ = make_gl_rasterizer(frame, samples, method.culling, limits);
+    else if (method_ == VisibilityMethod::kRaytrace)
         tracer_ = make_tracer(frame, samples);
     else
         bins_.emplace(frame, method.tile_size, limits);
@@ -62,6 +64,7 @@ Visibility::Visibility(const Frame& frame, const SampleTable& samples, const Met
 void Visibility::cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map) const {
     hits.reset(samples_.slots());
     if (tracer_) return tracer_->trace(tile, hits);
+    if (rasterizer_) return rasterizer_->cover(tile, hits, counts, map);
     const TileWork work{frame_, samples_, bins_->triangles(), bins_->tile(tile.x0, tile.y0), tile, map};
     if (method_ == VisibilityMethod::kMicropolygon)
         cover_micropolygons(work, hits, counts);
