@@ -8,18 +8,9 @@
 #include "cull/cull_test.h"
 
 namespace pentaprism {
-namespace {
-
-bool prepare(const LocalTriangle&, const Footprint&, CullState&) {
-    return true;
-}
-bool keeps(const CullState&, const LocalSample&) {
-    return true;
-}
-
-}  // namespace
 
 extern const CullTest bbox_test;
-const CullTest bbox_test{"bbox", "McGuire, Enderton, Shirley, Luebke 2010, fifteen-edge box", prepare, keeps};
+const CullTest bbox_test{"bbox", "McGuire, Enderton, Shirley, Luebke 2010, fifteen-edge box", keeps_every_footprint,
+                         keeps_every_sample};
 
 }  // namespace pentaprism

@@ -1,5 +1,14 @@
 #pragma once
 // Cells of lens and shutter with a screen box each, for `interval` and `interval-fine`.
+//
+// Known as Pixar's interval method; Fatahalian, Luong, Boulos, Akeley, Mark, Hanrahan 2009 (Data-Parallel Rasterization
+// of Micropolygons with Defocus and Motion Blur) describe it. Within a cell the triangle is seen only in the box of
+// docs/develop/algorithms.md 3.2 restricted to the cell's ranges (proof there); a sample is tested if its pixel or
+// other footprint touches the box of its cell. The literature bounds x and w by intervals and divides; we take the box
+// of the six points at the ends of the cell, which is tighter. A triangle that reaches the camera plane gets one box
+// for all cells, the exact test's own.
+//
+// Rounding: the box carries the slack of 4.2; cells are 1e-5 larger than the samples that belong to them.
 
 #include <algorithm>
 #include <bitset>
@@ -14,6 +23,10 @@ namespace pentaprism {
 template <int kTime, int kLens>
 struct Cells {
     static constexpr int kCount = kTime * kLens * kLens;
+
+    static constexpr CullTest test(const char* name, const char* paper) {
+        return {name, paper, prepare, keeps, Grain::kPixel, begin};
+    }
 
     struct Setup {
         LocalBox boxes[kCount];

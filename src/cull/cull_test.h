@@ -71,6 +71,15 @@ struct CullTest {
     bool conservative = true;
 };
 
+/// `prepare` of a test that asks nothing of footprints beyond the triangle's screen bounds.
+inline bool keeps_every_footprint(const LocalTriangle&, const Footprint&, CullState&) {
+    return true;
+}
+/// `keeps` of a test that bounds the screen alone and says nothing of single samples.
+inline bool keeps_every_sample(const CullState&, const LocalSample&) {
+    return true;
+}
+
 /// All culling tests, by name.
 std::span<const CullTest* const> cull_table();
 

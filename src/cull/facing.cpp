@@ -17,14 +17,11 @@ bool prepare(const LocalTriangle& T, const Footprint& footprint, CullState&) {
     if (domain.empty()) return false;
     return T.two_sided || facing(T, domain) != Facing::kBack;
 }
-bool keeps(const CullState&, const LocalSample&) {
-    return true;
-}
 
 }  // namespace
 
 extern const CullTest facing_test;
-const CullTest facing_test{"facing", "Munkberg & Akenine-Moller 2011, Backface Culling", prepare, keeps,
+const CullTest facing_test{"facing", "Munkberg & Akenine-Moller 2011, Backface Culling", prepare, keeps_every_sample,
                            Grain::kBucket};
 
 }  // namespace pentaprism

@@ -28,14 +28,11 @@ bool prepare(const LocalTriangle&, const Footprint& f, CullState& state) {
     const Setup& setup = state.setup->as<Setup>();
     return setup.ranges.meets(f.x0, f.x1, f.y0, f.y1) || setup.exact.meets(f.x0, f.x1, f.y0, f.y1);
 }
-bool keeps(const CullState&, const LocalSample&) {
-    return true;
-}
 
 }  // namespace
 
 extern const CullTest gamma_ranges_test;
-const CullTest gamma_ranges_test{"gamma-ranges", "Laine & Karras 2011, GetGammaRanges", prepare, keeps, Grain::kPixel,
-                                 begin};
+const CullTest gamma_ranges_test{
+    "gamma-ranges", "Laine & Karras 2011, GetGammaRanges", prepare, keeps_every_sample, Grain::kPixel, begin};
 
 }  // namespace pentaprism

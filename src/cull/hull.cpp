@@ -24,15 +24,12 @@ bool begin(const LocalTriangle& T, const Footprint& picture, CullSetup& setup) {
 bool prepare(const LocalTriangle&, const Footprint& f, CullState& state) {
     return state.setup->as<HullPolygon>().meets(f.x0, f.x1, f.y0, f.y1);
 }
-bool keeps(const CullState&, const LocalSample&) {
-    return true;
-}
 
 }  // namespace
 
 extern const CullTest hull_test;
 const CullTest hull_test{"hull",        "McGuire, Enderton, Shirley, Luebke 2010, hull of the swept triangle",
-                         prepare,       keeps,
+                         prepare,       keeps_every_sample,
                          Grain::kPixel, begin};
 
 }  // namespace pentaprism

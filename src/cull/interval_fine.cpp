@@ -1,28 +1,13 @@
-// interval-fine: a screen box for each cell of lens and shutter, 16 parts of the shutter times 4x4 of the lens.
-//
-// Known as Pixar's interval method; Fatahalian, Luong, Boulos, Akeley, Mark, Hanrahan 2009 (Data-Parallel Rasterization
-// of Micropolygons with Defocus and Motion Blur) describe it. Within a cell the triangle is seen only in the box of
-// docs/develop/algorithms.md 3.2 restricted to the cell's ranges (proof there); a sample is tested if its pixel or
-// other footprint touches the box of its cell. The literature bounds x and w by intervals and divides; we take the box
-// of the six points at the ends of the cell, which is tighter. A triangle that reaches the camera plane gets one box
-// for all cells, the exact test's own. Many cells: close to the samples' own bounds, dear to set up for a small
-// triangle. interval.cpp has fewer.
-//
-// Rounding: the box carries the slack of 4.2; cells are 1e-5 larger than the samples that belong to them.
+// interval-fine: a screen box for each cell of lens and shutter, 16 parts of the shutter times 4x4 of the lens. Many
+// cells: close to the samples' own bounds, dear to set up for a small triangle. cull_cells.h has the method, its source
+// and what we do otherwise; interval.cpp has fewer cells.
 
 #include "cull/cull_cells.h"
 
 namespace pentaprism {
-namespace {
-
-using OurCells = Cells<16, 4>;
-
-}  // namespace
 
 extern const CullTest interval_fine_test;
-const CullTest interval_fine_test{
-    "interval-fine",   "Fatahalian et al. 2009 (Pixar), 16 parts of the shutter times 4x4 of the lens",
-    OurCells::prepare, OurCells::keeps,
-    Grain::kPixel,     OurCells::begin};
+const CullTest interval_fine_test = Cells<16, 4>::test(
+    "interval-fine", "Fatahalian et al. 2009 (Pixar), 16 parts of the shutter times 4x4 of the lens");
 
 }  // namespace pentaprism

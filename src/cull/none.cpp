@@ -3,18 +3,8 @@
 #include "cull/cull_test.h"
 
 namespace pentaprism {
-namespace {
-
-bool prepare(const LocalTriangle&, const Footprint&, CullState&) {
-    return true;
-}
-bool keeps(const CullState&, const LocalSample&) {
-    return true;
-}
-
-}  // namespace
 
 extern const CullTest none_test;
-const CullTest none_test{"none", "the bounding box alone", prepare, keeps};
+const CullTest none_test{"none", "the bounding box alone", keeps_every_footprint, keeps_every_sample};
 
 }  // namespace pentaprism

@@ -1,15 +1,18 @@
 #pragma once
-// Shades what a tile's samples see: once for each triangle and pixel, at mid-shutter, at the mean of the barycentrics
-// of the samples that see it (McGuire, Enderton, Shirley, Luebke 2010; here the mean instead of their last hit).
-// Nothing hidden is ever shaded.
+// Shades what a tile's samples see, at mid-shutter: once for each cell of a triangle that holds samples, for each
+// triangle and pixel at the mean of the barycentrics of the samples that see it (McGuire, Enderton, Shirley, Luebke
+// 2010; here the mean instead of their last hit), or for each sample. Nothing hidden is ever shaded.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "cover/hits.h"
 #include "sample/sample_table.h"
+#include "shade/seen_samples.h"
 #include "shade/shaded_triangle.h"
 #include "shade/shading_scene.h"
+#include "shade/tile_samples.h"
 #include "shade/tile_shade.h"
 
 namespace pentaprism {
@@ -38,41 +41,37 @@ class TileShader {
                        TileShade& out);
 
   private:
-    /// A covered sample: pixel = 16 * (block of the cell) + lane.
-    struct Entry {
-        std::uint16_t pixel, slot;
+    /// The samples of one triangle.
+    struct Run {
+        const ShadedTriangle& triangle;
+        std::uint32_t number;
+        std::span<const std::uint32_t> places;
+        std::span<const std::uint16_t> pixels;
     };
-    class LocalRun;
-    class CellSamples;
     /// A cell of the triangle in hand, and the side from which it is seen.
     struct SharedCell {
-        ShadingCell cell;
-        bool alone, front;
-        glm::vec3 barycentrics;  ///< of the sample, if it is alone
+        CellKey key;
+        std::size_t first;  ///< the sample that was first to see it
         QuarterColors colors;
     };
-    template <class Points>
-    void light_quarters(const ShadingScene& scene, const QuarterColors& colors, std::uint32_t triangle,
-                        std::uint32_t seed, const Points& write_points, TileShade& out);
-    void shade_cells(const ShadingScene& scene, const CellSamples& samples, const ShadedTriangle& shaded, LocalRun& run,
-                     std::uint32_t begin, std::uint32_t end, int slots, TileShade& out);
-    void collect(const ShadingScene& scene, const SampleTable& samples, const Tile& tile, const Hits& hits,
-                 int first_block, int last_block, TileShade& out);
-    void shade_background(const ShadingScene& scene, const SampleTable& samples, const Tile& tile, TileShade& out);
-    void sort_by_triangle();
-    std::uint32_t local_triangle(std::uint32_t triangle);
-    void grow_table();
+    void shade_pixels(const Run& run, const Tile& tile, TileShade& out);
+    void find_cells(const Run& run, TileShade& out);
+    void shade_cells(const Run& run, TileShade& out);
+    void light_quarters(const QuarterColors& colors, std::uint32_t seed, TileShade& out);
+    void shade_background(const SampleVector* samples, const Tile& tile, TileShade& out);
+    int quarter_of(std::size_t sample) const;
 
+    const ShadingScene* scene_ = nullptr;
+    bool by_quarters_ = false;  // colours change while the shutter is open
     LitColor lit_;
+    ShadowPoint shadow_point_;
+    ShadowsOnTriangle shadows_;
+    TileSamples samples_;
+    SeenSamples seen_;
     std::int64_t shaded_ = 0;
-    std::size_t locals_of_run_ = 0;
+    std::vector<SampleVector> room_;
     std::vector<SharedCell> cells_;
     std::vector<std::uint32_t> cell_table_;  // open addressing: index into cells_ + 1, or 0
-    std::vector<Entry> entries_, sorted_, misses_;
-    std::vector<std::uint32_t> locals_;     // of each entry: the triangle's number in this chunk
-    std::vector<std::uint32_t> triangles_;  // of each number
-    std::vector<std::uint32_t> counts_;     // of each number; after sorting the end of its run
-    std::vector<std::uint32_t> table_;      // open addressing: number + 1, or 0
 };
 
 }  // namespace pentaprism

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <numbers>
 #include <optional>
 
 #include "frame/opacity.h"
@@ -47,7 +46,7 @@ glm::vec3 visible_normal(const glm::vec3& normal, const glm::vec3& face, const g
 }  // namespace
 
 ShadedTriangle::ShadedTriangle(const ShadingScene& scene, std::uint32_t triangle)
-    : scene_(scene), part_(scene.part_of(triangle)), vertices_(scene.frame().vertices(triangle)) {
+    : scene_(scene), triangle_(triangle), part_(scene.part_of(triangle)), vertices_(scene.frame().vertices(triangle)) {
     if (part_.material->textured || scene.options().rate == ShadingRate::kDecoupled) project(triangle);
     const glm::vec3 &a = part_.positions[vertices_[0]], &b = part_.positions[vertices_[1]],
                     &c = part_.positions[vertices_[2]];
@@ -72,7 +71,15 @@ void ShadedTriangle::project(std::uint32_t triangle) {
         projection_.coc[i] = between(middle.c[i]);
         projection_.motion[i] = glm::dvec3(last.x[i][1], last.y[i][1], last.w[i][1]) -
                                 glm::dvec3(first.x[i][0], first.y[i][0], first.w[i][0]);
+        cells_.x[i] = static_cast<float>(corner[i].x);
+        cells_.y[i] = static_cast<float>(corner[i].y);
+        cells_.w[i] = static_cast<float>(corner[i].z);
+        cells_.coc[i] = static_cast<float>(projection_.coc[i]);
+        cells_.motion_x[i] = static_cast<float>(projection_.motion[i].x);
+        cells_.motion_y[i] = static_cast<float>(projection_.motion[i].y);
+        cells_.motion_w[i] = static_cast<float>(projection_.motion[i].z);
     }
+    cells_.w_near = static_cast<float>(frame.view.w_near());
     const glm::dvec3 rows[3] = {glm::cross(corner[1], corner[2]), glm::cross(corner[2], corner[0]),
                                 glm::cross(corner[0], corner[1])};
     const double determinant = glm::dot(corner[0], rows[0]);
@@ -95,14 +102,18 @@ TextureFootprint ShadedTriangle::footprint(const glm::vec3& barycentrics, int se
         point.z * (projection_.by_x - b * (projection_.by_x.x + projection_.by_x.y + projection_.by_x.z));
     const glm::dvec3 dy =
         point.z * (projection_.by_y - b * (projection_.by_y.x + projection_.by_y.y + projection_.by_y.z));
-    const glm::dvec2 uv0(uvs[vertices_[0]]);
-    const glm::dvec2 edge1 = glm::dvec2(uvs[vertices_[1]]) - uv0, edge2 = glm::dvec2(uvs[vertices_[2]]) - uv0;
+    const Frame& frame = scene_.frame();
+    const auto uv = [&](int k) {
+        if (frame.pieces.empty()) return glm::dvec2(uvs[vertices_[k]]);
+        return glm::dvec2(interpolate(uvs, vertices_, frame.in_source(triangle_, glm::vec3(k == 0, k == 1, k == 2))));
+    };
+    const glm::dvec2 edge1 = uv(1) - uv(0), edge2 = uv(2) - uv(0);
     const glm::vec2 by_x(dx.y * edge1 + dx.z * edge2), by_y(dy.y * edge1 + dy.z * edge2);
 
     const glm::dvec3 motion = b.x * projection_.motion[0] + b.y * projection_.motion[1] + b.z * projection_.motion[2];
     const glm::vec2 velocity((glm::dvec2(motion) - motion.z / point.z * glm::dvec2(point)) / point.z);
     const float coc = static_cast<float>(glm::dot(b, projection_.coc) / point.z);
-    const float ratio = static_cast<float>(scene_.frame().view.lens.ratio);
+    const float ratio = static_cast<float>(frame.view.lens.ratio);
 
     TextureFootprint footprint;
     const ShadingOptions& options = scene_.options();
@@ -119,52 +130,30 @@ TextureFootprint ShadedTriangle::footprint(const glm::vec3& barycentrics, int se
     return footprint;
 }
 
-ShadingCell ShadedTriangle::cell_of(const glm::vec3& barycentrics) const {
-    constexpr double kBlurShare = 0.25;
-    constexpr int kCoarsest = 6, kDirections = 16;
-    const glm::dvec3 b(barycentrics);
-    const glm::dvec3* corner = projection_.corner;
-    const glm::dvec3 point = b.x * corner[0] + b.y * corner[1] + b.z * corner[2];
-    if (!(point.z >= scene_.frame().view.w_near())) return {};
-    const glm::dvec2 place = glm::dvec2(point) / point.z;
-    if (!(std::max(std::abs(place.x), std::abs(place.y)) < 32768.0)) return {};
-    const glm::dvec3 motion = b.x * projection_.motion[0] + b.y * projection_.motion[1] + b.z * projection_.motion[2];
-    const glm::dvec2 velocity = (glm::dvec2(motion) - motion.z * place) / point.z;
-    const double coc = glm::dot(b, projection_.coc) / point.z, lens2 = 3.0 * coc * coc;
-    // floor(log2(share * length)), from the squared length.
-    const auto level = [kMost = kCoarsest](double length2) {
-        const double cells2 = kBlurShare * kBlurShare * length2;
-        return cells2 >= 4.0 && std::isfinite(cells2) ? std::min(std::ilogb(cells2) / 2, kMost) : 0;
-    };
-    const int longer = level(glm::dot(velocity, velocity) + lens2), shorter = level(lens2);
-    int direction = 0;
-    if (longer != shorter) {
-        const double turn = std::atan2(velocity.y, velocity.x) / std::numbers::pi * kDirections;
-        direction = (static_cast<int>(std::lround(turn)) + 2 * kDirections) % kDirections;
-    }
-    const double angle = std::numbers::pi * direction / kDirections;
-    const double c = direction == 0 ? 1.0 : std::cos(angle), sine = direction == 0 ? 0.0 : std::sin(angle);
-    const double width = std::ldexp(1.0, longer), height = std::ldexp(1.0, shorter);
-    const double column = std::floor((c * place.x + sine * place.y) / width);
-    const double row = std::floor((c * place.y - sine * place.x) / height);
-    ShadingCell cell;
-    const auto bits = [](double x) { return static_cast<std::uint64_t>(static_cast<std::int64_t>(x) + (1 << 20)); };
-    cell.key = (std::uint64_t{1} << 62) | (static_cast<std::uint64_t>(direction) << 52) |
-               (static_cast<std::uint64_t>(longer) << 49) | (static_cast<std::uint64_t>(shorter) << 46) |
-               (bits(column) << 22) | bits(row);
-    const double x = (column + 0.5) * width, y = (row + 0.5) * height;
-    cell.centre = {c * x - sine * y, sine * x + c * y};
-    cell.along = glm::vec2(c * width, sine * width);
-    cell.across = glm::vec2(-sine * height, c * height);
-    return cell;
+namespace {
+
+// From barycentrics over w, up to a factor: moved into the triangle, with sum 1.
+glm::vec3 inside(const glm::dvec3& over_w) {
+    const double sum = over_w.x + over_w.y + over_w.z;
+    const glm::dvec3 kept = glm::max(sum < 0.0 ? -over_w : over_w, glm::dvec3(0.0));
+    const double total = kept.x + kept.y + kept.z;
+    return total > 0.0 && std::isfinite(total) ? glm::vec3((1.0 / total) * kept) : glm::vec3(1.0f / 3.0f);
 }
 
+}  // namespace
+
 glm::vec3 ShadedTriangle::barycentrics_at(const glm::dvec2& place) const {
-    const glm::dvec3 over_w = projection_.by_x * place.x + projection_.by_y * place.y + projection_.by_1;
-    const double sum = over_w.x + over_w.y + over_w.z;
-    const glm::dvec3 b = glm::max(over_w / sum, glm::dvec3(0.0));
-    const double total = b.x + b.y + b.z;
-    return total > 0.0 && std::isfinite(total) ? glm::vec3(b / total) : glm::vec3(1.0f / 3.0f);
+    return inside(projection_.by_x * place.x + projection_.by_y * place.y + projection_.by_1);
+}
+
+void ShadedTriangle::barycentrics_of_quarters(const ShadingCell& cell, glm::vec3 out[4]) const {
+    const auto change = [&](const glm::dvec2& way) { return projection_.by_x * way.x + projection_.by_y * way.y; };
+    const glm::dvec3 middle = change(cell.centre) + projection_.by_1;
+    const glm::dvec3 along = change(0.25 * glm::dvec2(cell.along)), across = change(0.25 * glm::dvec2(cell.across));
+    out[0] = inside(middle - along - across);
+    out[1] = inside(middle + along - across);
+    out[2] = inside(middle - along + across);
+    out[3] = inside(middle + along + across);
 }
 
 // How far the smooth surface bulges out over the facet, along the smooth normal: a parabola over each edge that follows
@@ -257,12 +246,13 @@ glm::vec3 ShadedTriangle::mapped_normal(const glm::vec3& b, const glm::vec3& map
     return map.x * along + map.y * (glm::cross(normal, along) * tangent.w) + map.z * normal;
 }
 
-void ShadedTriangle::shade(const glm::vec3& b, bool front, const ShadingCell& cell, LitColor& out) const {
+void ShadedTriangle::shade(const glm::vec3& barycentrics, bool front, const ShadingCell& cell, LitColor& out) const {
     out.shadowed.clear();
     out.rest = glm::vec3(0.0f);
     const BoundMaterial& bound = *part_.material;
     const Material& material = bound.material;
     const Primitive& primitive = *part_.primitive;
+    const glm::vec3 b = scene_.frame().in_source(triangle_, barycentrics);  // of vertices_
 
     glm::vec2 uv[2] = {};
     TextureFootprint footprints[2];
@@ -270,7 +260,7 @@ void ShadedTriangle::shade(const glm::vec3& b, bool front, const ShadingCell& ce
         for (int set = 0; set < 2; ++set) {
             if (primitive.texcoords[set].empty()) continue;
             uv[set] = interpolate(primitive.texcoords[set], vertices_, b);
-            footprints[set] = footprint(b, set, cell);
+            footprints[set] = footprint(barycentrics, set, cell);
         }
     const auto look_up = [&](const BoundTexture& texture) {
         return texture.pyramid ? texture.sample(uv[texture.set], footprints[texture.set]) : glm::vec4(1.0f);

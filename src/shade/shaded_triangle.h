@@ -9,6 +9,7 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
+#include "shade/seen_samples.h"
 #include "shade/shading_scene.h"
 
 namespace pentaprism {
@@ -25,17 +26,6 @@ struct LitColor {
     glm::vec3 position{0.0f};  ///< relative to the eye, at mid-shutter
 };
 
-/// A piece of a triangle that is shaded once: a rectangle on the screen as seen at mid-shutter through the middle of
-/// the lens, where motion and lens do not blur; larger where they do, as what is blurred holds no detail (after
-/// Vaidyanathan, Toth, Salvi, Boulos, Lefohn 2012; here for each material point, by powers of two). Sides are a quarter
-/// of the blur, along the motion and across it, and no less than a pixel: the grid of pixels itself where there is no
-/// blur.
-struct ShadingCell {
-    std::uint64_t key = 0;                            ///< 0: none; the sample is shaded by itself
-    glm::dvec2 centre{0.0};                           ///< pixels from the middle of the picture, y up
-    glm::vec2 along{1.0f, 0.0f}, across{0.0f, 1.0f};  ///< sides, pixels
-};
-
 class ShadedTriangle {
   public:
     ShadedTriangle(const ShadingScene& scene, std::uint32_t triangle);
@@ -44,12 +34,15 @@ class ShadedTriangle {
     /// The texture is averaged over the cell's sides.
     void shade(const glm::vec3& barycentrics, bool front, const ShadingCell& cell, LitColor& out) const;
 
-    /// The cell that holds the material point with these barycentrics.
-    ShadingCell cell_of(const glm::vec3& barycentrics) const;
+    /// For SeenSamples; only of use where the rate asks for cells.
+    const CellTriangle& cells() const { return cells_; }
 
     /// Barycentrics of the place (of the triangle's plane, moved into the triangle) that is seen at these pixels from
     /// the middle of the picture at mid-shutter.
     glm::vec3 barycentrics_at(const glm::dvec2& place) const;
+
+    /// The same of the middles of a cell's four quarters.
+    void barycentrics_of_quarters(const ShadingCell& cell, glm::vec3 out[4]) const;
 
   private:
     /// The triangle on the screen: pixels, at mid-shutter and through the middle of the lens.
@@ -65,9 +58,11 @@ class ShadedTriangle {
     TextureFootprint footprint(const glm::vec3& barycentrics, int set, const ShadingCell& cell) const;
 
     const ShadingScene& scene_;
+    std::uint32_t triangle_;
     const ShadedPart& part_;
-    std::array<std::uint32_t, 3> vertices_;
+    std::array<std::uint32_t, 3> vertices_;  // Frame::vertices()
     Projection projection_;
+    CellTriangle cells_;
     glm::vec3 face_normal_{0.0f};  // unit, towards the front
 };
 

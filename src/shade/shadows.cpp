@@ -8,7 +8,7 @@
 namespace pentaprism {
 namespace {
 
-constexpr int kMostMaps = 64;           // memory; what comes later casts no shadow
+constexpr std::size_t kMostMaps = 64;   // memory; what comes later casts no shadow
 constexpr float kWidestCone = 0.7853f;  // half angle that fits into one face of a cube
 
 // Axes that hold still in the world when the camera moves, so that a still shadow's edge does too.
@@ -43,37 +43,29 @@ Shadows::Shadows(const Frame& frame, const Lighting& lighting, const glm::dvec3&
     maps_.resize(lighting.lights.size());
     if (mode == ShadowMode::kOff || lighting.lights.empty()) return;
     world_ = world_motion(frame, eye, mode == ShadowMode::kStill);
-    table_ = std::make_unique<SampleTable>(ShadowMap::kSamples, 0x5eed, Lens{}, Grouping::kMotion);
+    samples_ = std::make_unique<ShadowSamples>(0x5eed);
     const int width = level_width(frame.view);
-    int made = 0;
+    lookup_ = shadow_lookup();
     for (std::size_t i = 0; i < maps_.size(); ++i) {
         const PosedLight& light = lighting.lights[i];
         LightMaps& maps = maps_[i];
-        const int faces = is_around(light) ? 6 : 1;
-        if (!light.casts_shadow || light.intensity == glm::vec3(0.0f) || made + faces > kMostMaps) continue;
-        made += faces;
+        const std::size_t faces = is_around(light) ? 6 : 1;
+        if (!light.casts_shadow || light.intensity == glm::vec3(0.0f) || map_count_ + faces > kMostMaps) continue;
         any_ = true;
         const bool sun = light.kind == LightKind::kDirectional;
         maps.axes = faces == 1 ? axes_along(glm::dvec3(light.direction)) : glm::dmat3(1.0);
+        maps.first = map_count_;
+        map_count_ += faces;
         maps.position = sun ? glm::vec3(0.0f) : light.position;
-        for (int face = 0; face < faces; ++face) {
+        for (std::size_t face = 0; face < faces; ++face) {
             LightView view;
             view.perspective = !sun;
             view.position = glm::dvec3(maps.position);
-            view.axes = faces == 1 ? maps.axes : face_axes(maps.axes, face);
-            maps.faces.push_back(std::make_unique<ShadowMap>(world_, frame, *table_, view, width));
+            view.axes = faces == 1 ? maps.axes : face_axes(maps.axes, static_cast<int>(face));
+            maps.faces.push_back(std::make_unique<ShadowMap>(world_, frame, *samples_, view, width));
+            if (sun) maps.faces.back()->prepare();  // every picture asks for it
         }
     }
-}
-
-float Shadows::lit(std::size_t light, const ShadowReceiver& receiver, const glm::vec3& position,
-                   std::uint32_t seed) const {
-    const LightMaps& maps = maps_[light];
-    if (maps.faces.empty()) return 1.0f;
-    if (maps.faces.size() == 1) return maps.faces[0]->lit(receiver, seed);
-    const glm::vec3 from = position - maps.position, size = glm::abs(from);
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    return maps.faces[2 * axis + (from[axis] < 0.0f ? 1 : 0)]->lit(receiver, seed);
 }
 
 std::int64_t Shadows::cells_rendered() const {
@@ -81,6 +73,29 @@ std::int64_t Shadows::cells_rendered() const {
     for (const LightMaps& maps : maps_)
         for (const auto& face : maps.faces) cells += face->cells_rendered();
     return cells;
+}
+
+void ShadowsOnTriangle::start(const Shadows& shadows, std::uint32_t triangle) {
+    shadows_ = &shadows;
+    triangle_ = triangle;
+    ++starts_;
+    if (receivers_.size() < shadows.map_count_) receivers_.resize(shadows.map_count_);
+}
+
+std::uint32_t ShadowsOnTriangle::lit(std::size_t light, const ShadowPoint& point, std::uint32_t seed) {
+    const Shadows::LightMaps& maps = shadows_->maps_[light];
+    std::size_t face = 0;
+    if (maps.faces.size() > 1) {
+        const glm::vec3 from = point.position - maps.position, size = glm::abs(from);
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        face = 2 * axis + (from[axis] < 0.0f ? 1 : 0);
+    }
+    Receiver& receiver = receivers_[maps.first + face];
+    if (receiver.started != starts_) {
+        receiver.started = starts_;
+        receiver.receiver.start(shadows_->world_, triangle_, *maps.faces[face]);
+    }
+    return shadows_->lookup_(receiver.receiver, point, seed);
 }
 
 }  // namespace pentaprism

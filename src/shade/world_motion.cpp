@@ -1,6 +1,7 @@
 #include "shade/world_motion.h"
 
 #include <algorithm>
+#include <glm/common.hpp>
 #include <map>
 
 #include "base/parallel.h"
@@ -35,11 +36,14 @@ int segments_of(const Frame& frame, const Part& part, int most) {
 }
 
 Knots pose_knots(const Frame& frame, const Part& part, int segments, const Poses& poses) {
-    const std::size_t n = part.vertex_count;
+    const std::size_t n = part.vertex_count, of_primitive = n - part.midpoints.size();
     Knots knots;
     const auto pose = [&](const Pose& at) {
         knots.emplace_back(n);
-        pose_positions(*frame.scene, at, part.placement, knots.back());
+        std::vector<glm::dvec3>& points = knots.back();
+        pose_positions(*frame.scene, at, part.placement, std::span(points).first(of_primitive));
+        for (std::size_t i = 0; i < part.midpoints.size(); ++i)
+            points[of_primitive + i] = 0.5 * (points[part.midpoints[i][0]] + points[part.midpoints[i][1]]);
     };
     if (segments == 0) {
         pose(frame.middle);
@@ -57,6 +61,7 @@ WorldMotion world_motion(const Frame& frame, const glm::dvec3& origin, bool froz
     WorldMotion world;
     world.origin = origin;
     world.parts = frame.parts;
+    world.part_of = frame.part_of;
     int most = 1;
     for (const Part& part : frame.parts) most = std::max(most, part.segments);
     const bool open = !frozen && frame.view.shutter.close > frame.view.shutter.open;
@@ -80,12 +85,17 @@ WorldMotion world_motion(const Frame& frame, const glm::dvec3& origin, bool froz
         points += knots[i].size() * part.vertex_count;
     }
     world.points.resize(points);
+    world.bounds.resize(world.parts.size());
     world.corners.resize(frame.corners.size());
     parallel_for(segments.size(), [&](std::size_t i) {
         const Part &part = world.parts[i], &was = frame.parts[i];
         glm::vec3* out = world.points.data() + part.first_point;
         for (const auto& knot : knots[i])
-            for (const glm::dvec3& p : knot) *out++ = glm::vec3(p - origin);
+            for (const glm::dvec3& p : knot) {
+                *out = glm::vec3(p - origin);
+                world.bounds[i].low = glm::min(world.bounds[i].low, *out);
+                world.bounds[i].high = glm::max(world.bounds[i].high, *out++);
+            }
         const std::size_t first = 3 * std::size_t{part.first_triangle}, count = 3 * std::size_t{part.triangle_count};
         for (std::size_t c = first; c < first + count; ++c)
             world.corners[c] = frame.corners[c] - was.first_point + part.first_point;

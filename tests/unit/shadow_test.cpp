@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -57,15 +59,17 @@ struct Stage {
         const WorldMotion world = world_motion(frame, glm::dvec3(0.0), true);
         glm::vec3 position(0.0f);
         for (int i = 0; i < 3; ++i) position += b[i] * world.points[world.corners[3 * triangle + i]];
+        ShadowsOnTriangle on_triangle;
+        on_triangle.start(*shadows, triangle);
+        ShadowPoint point;
+        for (int k = 0; k < 3; ++k) std::fill_n(point.barycentrics[k], ShadowPoint::kLanes, b[k]);
+        point.position = position;
+        point.texel = texel;
         double sum = 0.0;
         for (int s = 0; s < seeds; ++s) {
-            ShadowReceiver receiver;
-            receiver.triangle = triangle;
-            receiver.quarter = quarter < 0 ? s % 4 : quarter;
-            receiver.count = 1 + s / 4 % 4;
-            for (glm::vec3& point : receiver.points) point = b;
-            receiver.texel = texel;
-            sum += shadows->lit(0, receiver, position, mix(s));
+            const int q = quarter < 0 ? s % 4 : quarter;
+            point.quarters = 1u << q;
+            sum += 0.25 * std::popcount(on_triangle.lit(0, point, mix(s)) >> 4 * q & 15u);
         }
         return sum / seeds;
     }

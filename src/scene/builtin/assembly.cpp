@@ -164,4 +164,12 @@ Material painted(std::string name, double roughness) {
     return material;
 }
 
+Material backdrop(std::string name) {
+    Material material;
+    material.name = std::move(name);
+    material.unlit = true;
+    material.double_sided = true;
+    return material;
+}
+
 }  // namespace pentaprism::builtin

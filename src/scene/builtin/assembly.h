@@ -66,4 +66,7 @@ TextureRef texture(Index image, glm::dvec2 scale = glm::dvec2(1.0));
 /// Dull, opaque material whose colour is the vertices' own.
 Material painted(std::string name, double roughness = 0.8);
 
+/// Shows its vertices' colours from both sides, whatever the light: skies and far hills.
+Material backdrop(std::string name);
+
 }  // namespace pentaprism::builtin

@@ -791,10 +791,6 @@ void add_city(Assembly& scene, Index root, int count) {
 }
 
 void add_sky(Assembly& scene, Index root) {
-    Material sky;
-    sky.name = "evening sky";
-    sky.unlit = true;
-    sky.double_sided = true;
     MeshBuilder m;
     m.surface(
         70, 36,
@@ -810,7 +806,7 @@ void add_sky(Assembly& scene, Index root) {
             const glm::dvec3 lit = glm::mix(glm::dvec3(0.98, 0.72, 0.50), glm::dvec3(0.95, 0.84, 0.76), v);
             return glm::mix(clear, lit, 0.8 * glm::smoothstep(0.48, 0.72, cloud));
         });
-    scene.add_node("evening sky", root, {}, scene.add_mesh("evening sky", m.take(scene.add(sky))));
+    scene.add_node("evening sky", root, {}, scene.add_mesh("evening sky", m.take(scene.add(backdrop("evening sky")))));
 }
 
 void add_camera_and_light(Assembly& scene) {

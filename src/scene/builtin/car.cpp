@@ -129,26 +129,13 @@ void add_roadside(Assembly& scene) {
     std::vector<Index> crowns;
     for (int kind = 0; kind < 2; ++kind) {
         MeshBuilder trunk, crown;
-        trunk.color = {0.12, 0.085, 0.06};
-        trunk.tube(
-            {{{0.0, -0.2, 0.0}, 0.32}, {{0.05, 1.4, 0.0}, 0.2}, {{0.0, 3.2, 0.1}, 0.13}, {{0.1, 5.6, 0.0}, 0.04}}, 8,
-            8);
+        DistantTreeStyle style;
+        style.trunk = {
+            {{0.0, -0.2, 0.0}, 0.32}, {{0.05, 1.4, 0.0}, 0.2}, {{0.0, 3.2, 0.1}, 0.13}, {{0.1, 5.6, 0.0}, 0.04}};
+        style.leaves = 140;
         const Palette palette = kind == 0 ? Palette{{0.05, 0.16, 0.03}, {0.20, 0.34, 0.06}, {0.45, 0.40, 0.08}, 0.1}
                                           : Palette{{0.20, 0.20, 0.03}, {0.48, 0.36, 0.06}, {0.50, 0.22, 0.04}, 0.2};
-        for (int k = 0; k < 140; ++k) {
-            const glm::dvec3 d = random.direction();
-            const double r = std::cbrt(random.uniform());
-            Blade leaf;
-            leaf.base = glm::dvec3(0.0, 4.3, 0.0) + r * d * glm::dvec3(1.9, 2.2, 1.9);
-            leaf.axis = random.direction() + 0.5 * d;
-            leaf.face = glm::dvec3(0.0, 0.8, 0.0) + d;
-            leaf.length = random.range(0.6, 1.0);
-            leaf.width = 0.45 * leaf.length;
-            leaf.bend = 0.6;
-            leaf.fold = 0.3;
-            const glm::dvec3 color = palette.pick(random) * (0.4 + 0.6 * r) * (0.75 + 0.25 * d.y);
-            crown.blade(leaf, [&](double, double v, glm::dvec3) { return color * (0.8 + 0.3 * v); });
-        }
+        add_distant_tree(trunk, crown, random, style, palette);
         std::vector<Primitive> parts;
         parts.push_back(trunk.take(material));
         parts.push_back(crown.take(leafy));
@@ -176,10 +163,6 @@ void add_roadside(Assembly& scene) {
 }
 
 void add_sky(Assembly& scene) {
-    Material sky;
-    sky.name = "sky";
-    sky.unlit = true;
-    sky.double_sided = true;
     MeshBuilder m;
     m.surface(
         30, 24, [](double u, double v) { return glm::dvec3(glm::mix(-90.0, 130.0, u), -2.0 + 46.0 * v, -62.0); },
@@ -192,7 +175,7 @@ void add_sky(Assembly& scene) {
                 glm::mix(clear, glm::dvec3(0.95, 0.88, 0.78), 0.8 * glm::smoothstep(0.5, 0.72, cloud));
             return glm::mix(glm::dvec3(0.20, 0.27, 0.26), above, glm::smoothstep(0.0, 0.03, v - 0.055 - 0.07 * hills));
         });
-    scene.add_node("sky", kNone, {}, scene.add_mesh("sky", m.take(scene.add(sky))));
+    scene.add_node("sky", kNone, {}, scene.add_mesh("sky", m.take(scene.add(backdrop("sky")))));
 }
 
 void add_camera_and_light(Assembly& scene) {

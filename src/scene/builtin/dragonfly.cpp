@@ -326,10 +326,6 @@ void add_reeds(Assembly& pond) {
 
 /// The far bank in the morning haze, behind everything and in no light's way, with the sun's glitter before it.
 void add_far_bank(Assembly& pond) {
-    Material haze;
-    haze.name = "far bank";
-    haze.unlit = true;
-    haze.double_sided = true;
     MeshBuilder m;
     m.surface(
         40, 24,
@@ -345,7 +341,7 @@ void add_far_bank(Assembly& pond) {
                 glm::mix(glm::dvec3(0.95, 0.74, 0.46), glm::dvec3(0.36, 0.52, 0.62), glm::smoothstep(0.2, 0.7, v));
             return glm::mix(wood, sky, glm::smoothstep(-0.05, 0.08, v - 0.14 - 0.34 * trees));
         });
-    pond.add_node("far bank", kNone, {}, pond.add_mesh("far bank", m.take(pond.add(haze))));
+    pond.add_node("far bank", kNone, {}, pond.add_mesh("far bank", m.take(pond.add(backdrop("far bank")))));
 
     Random random(37);
     Material glint = painted("glitter");

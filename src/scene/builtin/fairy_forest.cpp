@@ -76,11 +76,7 @@ void add_ground(Assembly& forest) {
 /// The sky seen between the trunks: a curved wall that glows where the sun has just set. Only behind the trees, so that
 /// it stands in no light's way.
 void add_evening_sky(Assembly& forest) {
-    Material sky;
-    sky.name = "evening sky";
-    sky.unlit = true;
-    sky.double_sided = true;
-    const Index index = forest.add(sky);
+    const Index index = forest.add(backdrop("evening sky"));
     MeshBuilder m;
     m.surface(
         48, 28,

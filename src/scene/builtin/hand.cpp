@@ -231,10 +231,6 @@ void add_city_lights(Assembly& scene) {
 
 /// Dusk over the roofs: a wall of colour far behind.
 void add_dusk(Assembly& scene) {
-    Material sky;
-    sky.name = "dusk";
-    sky.unlit = true;
-    sky.double_sided = true;
     MeshBuilder m;
     m.surface(
         12, 20, [](double u, double v) { return glm::dvec3(-9.0 + 18.0 * u, -4.5 + 9.0 * v, -8.0); },
@@ -245,7 +241,7 @@ void add_dusk(Assembly& scene) {
             const glm::dvec3 horizon = glm::mix(glow * (0.55 + 0.6 * u), above, glm::smoothstep(0.42, 0.60, v));
             return glm::mix(street, horizon, glm::smoothstep(0.30, 0.43, v));
         });
-    scene.add_node("dusk", kNone, {}, scene.add_mesh("dusk", m.take(scene.add(sky))));
+    scene.add_node("dusk", kNone, {}, scene.add_mesh("dusk", m.take(scene.add(backdrop("dusk")))));
 }
 
 void add_camera_and_light(Assembly& scene) {

@@ -86,6 +86,28 @@ void add_branch(MeshBuilder& bark, MeshBuilder& foliage, Random& random, const B
     }
 }
 
+void add_distant_tree(MeshBuilder& bark, MeshBuilder& foliage, Random& random, const DistantTreeStyle& style,
+                      const Palette& palette) {
+    bark.color = {0.12, 0.085, 0.06};
+    bark.tube(style.trunk, style.trunk_around, style.trunk_along);
+    const double middle_light = 0.5 * (1.0 + style.low_light);
+    for (int k = 0; k < style.leaves; ++k) {
+        const glm::dvec3 d = random.direction();
+        const double r = std::cbrt(random.uniform());
+        Blade leaf;
+        leaf.base = glm::dvec3(0.0, style.crown_height, 0.0) + r * d * style.crown_radii;
+        leaf.axis = random.direction() + 0.5 * d;
+        leaf.face = glm::dvec3(0.0, 0.8, 0.0) + d;
+        leaf.length = random.range(style.shortest_leaf, style.longest_leaf);
+        leaf.width = style.leaf_width * leaf.length;
+        leaf.bend = 0.6;
+        leaf.fold = 0.3;
+        const glm::dvec3 color = palette.pick(random) * (style.inner_light + (1.0 - style.inner_light) * r) *
+                                 (middle_light + (1.0 - middle_light) * d.y);
+        foliage.blade(leaf, [&](double, double v, glm::dvec3) { return color * (0.8 + 0.3 * v); });
+    }
+}
+
 void add_grass_tuft(MeshBuilder& grass, Random& random, int blades, double height, const Palette& palette) {
     for (int k = 0; k < blades; ++k) {
         const glm::dvec2 foot = 0.28 * height * random.in_disk();

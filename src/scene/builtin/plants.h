@@ -26,6 +26,22 @@ struct BranchStyle {
 void add_branch(MeshBuilder& bark, MeshBuilder& foliage, Random& random, const BranchStyle& style,
                 const Palette& palette);
 
+/// A tree to be seen from afar: a trunk into `bark`, an egg-shaped crown of large leaves into `foliage`, whose inner
+/// and lower leaves are darker.
+struct DistantTreeStyle {
+    std::vector<TubePoint> trunk;
+    int trunk_around = 8, trunk_along = 8;
+    int leaves = 120;
+    double crown_height = 4.3;  ///< of the crown's middle
+    glm::dvec3 crown_radii{1.9, 2.2, 1.9};
+    double shortest_leaf = 0.6, longest_leaf = 1.0;
+    double leaf_width = 0.45;  ///< of a leaf's length
+    double inner_light = 0.4;  ///< at the crown's middle; 1 at its surface
+    double low_light = 0.5;    ///< at the crown's foot; 1 at its top
+};
+void add_distant_tree(MeshBuilder& bark, MeshBuilder& foliage, Random& random, const DistantTreeStyle& style,
+                      const Palette& palette);
+
 void add_grass_tuft(MeshBuilder& grass, Random& random, int blades, double height, const Palette& palette);
 
 struct MushroomStyle {

@@ -339,26 +339,22 @@ void add_roadside(Assembly& scene) {
     std::vector<Index> crowns;
     for (int kind = 0; kind < 2; ++kind) {
         MeshBuilder trunk, crown;
-        trunk.color = {0.12, 0.085, 0.06};
-        trunk.tube(
-            {{{0.0, -0.2, 0.0}, 0.35}, {{0.05, 1.6, 0.0}, 0.22}, {{0.0, 4.0, 0.1}, 0.13}, {{0.1, 6.4, 0.0}, 0.04}}, 7,
-            6);
+        DistantTreeStyle style;
+        style.trunk = {
+            {{0.0, -0.2, 0.0}, 0.35}, {{0.05, 1.6, 0.0}, 0.22}, {{0.0, 4.0, 0.1}, 0.13}, {{0.1, 6.4, 0.0}, 0.04}};
+        style.trunk_around = 7;
+        style.trunk_along = 6;
+        style.leaves = 115;
+        style.crown_height = 5.2;
+        style.crown_radii = {2.4, 3.0, 2.4};
+        style.shortest_leaf = 0.9;
+        style.longest_leaf = 1.5;
+        style.leaf_width = 0.55;
+        style.inner_light = 0.35;
+        style.low_light = 0.4;
         const Palette palette = kind == 0 ? Palette{{0.035, 0.13, 0.025}, {0.16, 0.30, 0.05}, {0.30, 0.34, 0.07}, 0.1}
                                           : Palette{{0.06, 0.15, 0.03}, {0.24, 0.33, 0.06}, {0.42, 0.30, 0.05}, 0.15};
-        for (int k = 0; k < 115; ++k) {
-            const glm::dvec3 d = random.direction();
-            const double r = std::cbrt(random.uniform());
-            Blade leaf;
-            leaf.base = glm::dvec3(0.0, 5.2, 0.0) + r * d * glm::dvec3(2.4, 3.0, 2.4);
-            leaf.axis = random.direction() + 0.5 * d;
-            leaf.face = glm::dvec3(0.0, 0.8, 0.0) + d;
-            leaf.length = random.range(0.9, 1.5);
-            leaf.width = 0.55 * leaf.length;
-            leaf.bend = 0.6;
-            leaf.fold = 0.3;
-            const glm::dvec3 color = palette.pick(random) * (0.35 + 0.65 * r) * (0.7 + 0.3 * d.y);
-            crown.blade(leaf, [&](double, double v, glm::dvec3) { return color * (0.8 + 0.3 * v); });
-        }
+        add_distant_tree(trunk, crown, random, style, palette);
         std::vector<Primitive> parts;
         parts.push_back(trunk.take(plain));
         parts.push_back(crown.take(leafy_index));
@@ -371,10 +367,6 @@ void add_roadside(Assembly& scene) {
 }
 
 void add_sky(Assembly& scene) {
-    Material sky;
-    sky.name = "sky";
-    sky.unlit = true;
-    sky.double_sided = true;
     MeshBuilder m;
     m.surface(
         44, 14,
@@ -392,7 +384,7 @@ void add_sky(Assembly& scene) {
             const double hills = fractal_noise({14.0 * u, 3.0}, 3);
             return glm::mix(glm::dvec3(0.16, 0.25, 0.20), above, glm::smoothstep(0.0, 0.02, v - 0.05 - 0.06 * hills));
         });
-    scene.add_node("sky", kNone, {}, scene.add_mesh("sky", m.take(scene.add(sky))));
+    scene.add_node("sky", kNone, {}, scene.add_mesh("sky", m.take(scene.add(backdrop("sky")))));
 }
 
 void add_camera_and_light(Assembly& scene) {

@@ -1,0 +1,435 @@
+// A point's sixteen map samples at a time: which texels they are, and whether what the light sees there is the point.
+// The same operations in the same order on every CPU target, none of them fused: the same bits. Compiled once for each.
+
+#include "shade/shadow_lookup.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "shade/shadow_lookup.cpp"
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4)
+#include <hwy/foreach_target.h>
+// foreach_target.h must come first.
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <hwy/highway.h>
+
+#include "base/cpu.h"
+#include "sample/net.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pentaprism {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+constexpr int kAll = ShadowPoint::kLanes;
+using F = hn::CappedTag<float, kAll>;
+using I = hn::RebindToSigned<F>;
+using U = hn::RebindToUnsigned<F>;
+using Vec = hn::Vec<F>;
+using IVec = hn::Vec<I>;
+using Mask = hn::Mask<F>;
+using Path = ShadowReceiver::Path;
+constexpr int kWidth = static_cast<int>(hn::MaxLanes(F()));
+
+// Of a receiver's plane beyond its own triangle, texels: in front of it less is believed than behind it.
+constexpr float kFarthestBehind = 12.0f, kFarthestBefore = 100.0f;
+constexpr float kBias = 0.2f;  // texels
+constexpr int kAttempts = 16;  // texels along a moving point's way
+constexpr int kSamples = ShadowMap::kSamples;
+static_assert(kSamples == 4 && kAll == 16 && kCellSize == 32, "shifts and masks below");
+
+struct Place {
+    Vec x, y, z;
+};
+
+HWY_INLINE Vec plus_product(Vec sum, Vec a, Vec b) {
+    return hn::Add(sum, hn::Mul(a, b));
+}
+
+HWY_INLINE std::uint32_t bits_of(F f, Mask mask) {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(f, mask, bytes);
+    return bytes[0] | static_cast<std::uint32_t>(kWidth > 8 ? bytes[1] : 0) << 8;
+}
+
+// The point that has these barycentrics, of corners that are the same in all lanes.
+HWY_INLINE Place blend(F f, const Vec b[3], const float* corners, const Place& offset) {
+    Place p = offset;
+    for (int k = 0; k < 3; ++k) {
+        p.x = plus_product(p.x, b[k], hn::Set(f, corners[3 * k]));
+        p.y = plus_product(p.y, b[k], hn::Set(f, corners[3 * k + 1]));
+        p.z = plus_product(p.z, b[k], hn::Set(f, corners[3 * k + 2]));
+    }
+    return p;
+}
+
+// The same of corners that each lane has for itself, `index` floats on.
+HWY_INLINE Place blend_each(F f, const Vec b[3], const float* corners, IVec index, const Place& offset) {
+    Place p = offset;
+    for (int k = 0; k < 3; ++k) {
+        p.x = plus_product(p.x, b[k], hn::GatherIndex(f, corners + 3 * k, index));
+        p.y = plus_product(p.y, b[k], hn::GatherIndex(f, corners + 3 * k + 1, index));
+        p.z = plus_product(p.z, b[k], hn::GatherIndex(f, corners + 3 * k + 2, index));
+    }
+    return p;
+}
+
+// Sixteen map samples of one point.
+template <Path kPath, bool kPerspective>
+class Lookup {
+  public:
+    Lookup(ShadowReceiver& receiver, const ShadowPoint& point, std::uint32_t seed)
+        : receiver_(receiver), point_(point), seed_(seed) {
+        const LightView& view = receiver.map().view();
+        const bool none = point.offset == glm::vec3(0.0f);
+        for (int axis = 0; axis < 3; ++axis)
+            offset_[axis] = none ? 0.0f : glm::dot(glm::vec3(view.axes[axis]), point.offset);
+        half_ = 0.5f * static_cast<float>(receiver.map().width());
+    }
+
+    HWY_INLINE std::uint32_t lit() {
+        float reach = 0.0f, depth = 0.0f;
+        for (int first = 0; first < kAll; first += kWidth)
+            if (!find_ways(first, reach, depth)) return 0xffff;
+        if (!choose_level(reach, depth)) return 0xffff;
+        std::uint32_t lit = 0;
+        for (int first = 0; first < kAll; first += kWidth) lit |= compare(first) << first;
+        return lit;
+    }
+
+  private:
+    Place offset(F f) const { return {hn::Set(f, offset_[0]), hn::Set(f, offset_[1]), hn::Set(f, offset_[2])}; }
+    HWY_INLINE IVec quarter(I d, int first) const { return hn::ShiftRight<2>(hn::Iota(d, first)); }
+    HWY_INLINE Mask asked(I d, IVec quarter) const {
+        const IVec bit =
+            hn::And(hn::Set(d, static_cast<std::int32_t>(point_.quarters)), hn::Shl(hn::Set(d, 1), quarter));
+        return hn::RebindMask(F(), hn::Ne(bit, hn::Zero(d)));
+    }
+    HWY_INLINE void barycentrics(F f, int first, Vec b[3]) const {
+        for (int k = 0; k < 3; ++k) b[k] = hn::Load(f, point_.barycentrics[k] + first);
+    }
+
+    // Where the points are when their quarter begins, and the way to where they are when it ends; in tangents or
+    // metres. A straight line between is near enough to find the texels in which they are seen. False if a point is
+    // behind the light.
+    HWY_INLINE bool find_ways(int first, float& reach, float& depth) {
+        const F f;
+        const I d;
+        const IVec q = quarter(d, first);
+        const Mask wanted = asked(d, q);
+        if (hn::AllFalse(f, wanted)) return true;
+        Vec b[3];
+        barycentrics(f, first, b);
+        Place begin, end;
+        if constexpr (kPath == Path::kStill) {
+            begin = end = blend(f, b, receiver_.knots(), offset(f));
+        } else if constexpr (kPath == Path::kStraight) {
+            const Place open = blend(f, b, receiver_.knots(), offset(f));
+            const Place close = blend(f, b, receiver_.knots() + 9, offset(f));
+            const Vec s = hn::Mul(hn::ConvertTo(f, q), hn::Set(f, 1.0f / kSamples));
+            const Vec change[3] = {hn::Sub(close.x, open.x), hn::Sub(close.y, open.y), hn::Sub(close.z, open.z)};
+            const auto at = [&](Vec s) HWY_ATTR {
+                return Place{plus_product(open.x, s, change[0]), plus_product(open.y, s, change[1]),
+                             plus_product(open.z, s, change[2])};
+            };
+            begin = at(s);
+            end = at(hn::Add(s, hn::Set(f, 1.0f / kSamples)));
+        } else {
+            const IVec index = hn::Mul(q, hn::Set(d, 9));
+            begin = blend_each(f, b, receiver_.borders(), index, offset(f));
+            end = blend_each(f, b, receiver_.borders() + 9, index, offset(f));
+        }
+        Vec bx = begin.x, by = begin.y, ex = end.x, ey = end.y;
+        if constexpr (kPerspective) {
+            const Mask behind = hn::Not(hn::And(hn::Gt(begin.z, hn::Zero(f)), hn::Gt(end.z, hn::Zero(f))));
+            if (!hn::AllFalse(f, hn::And(behind, wanted))) return false;
+            bx = hn::Div(bx, begin.z), by = hn::Div(by, begin.z);
+            ex = hn::Div(ex, end.z), ey = hn::Div(ey, end.z);
+        }
+        hn::Store(bx, f, from_x_ + first);
+        hn::Store(by, f, from_y_ + first);
+        hn::Store(hn::Sub(ex, bx), f, way_x_ + first);
+        hn::Store(hn::Sub(ey, by), f, way_y_ + first);
+        const auto most = [&](float so_far, Vec here) HWY_ATTR {
+            return std::max(so_far, hn::GetLane(hn::MaxOfLanes(f, hn::IfThenElseZero(wanted, here))));
+        };
+        reach = most(reach, hn::Max(hn::Max(hn::Abs(bx), hn::Abs(by)), hn::Max(hn::Abs(ex), hn::Abs(ey))));
+        if constexpr (kPerspective) depth = most(depth, hn::Max(begin.z, end.z));
+        return true;
+    }
+
+    // Coarser than asked for if a point would lie beyond the level's edge. False if it lies beyond all.
+    HWY_INLINE bool choose_level(float reach, float depth) {
+        const ShadowMap& map = receiver_.map();
+        float distance = 1.0f;
+        if constexpr (kPerspective) {
+            distance = glm::dot(point_.position - glm::vec3(map.view().position), glm::vec3(map.view().axes[2]));
+            if (!(distance > 1e-3f)) return false;
+            if (!(reach < 0.99f * kWidestTangent)) return false;
+        }
+        exponent_ = map.exponent_of(point_.texel / distance);
+        const float edge = half_ - static_cast<float>(kCellSize);
+        while (exponent_ < ShadowMap::kCoarsest && !(reach < std::ldexp(edge, exponent_))) ++exponent_;
+        const float texel = std::ldexp(1.0f, exponent_);
+        scale_ = 1.0f / texel;
+        if constexpr (kPerspective)
+            limit_ = map.limit_of(depth * (1.0f + kFarthestBehind * texel));
+        else
+            limit_ = map.limit_of(INFINITY);
+        return reach < edge * texel;
+    }
+
+    // Texels of one place for each lane.
+    struct Texels {
+        IVec key, index;  // of the cell; of the sample in it
+    };
+    HWY_INLINE Texels texels(F f, Vec x, Vec y, IVec quarter) const {
+        const I d;
+        const Vec half = hn::Set(f, half_);
+        const IVec px = hn::ConvertTo(d, hn::Add(x, half)), py = hn::ConvertTo(d, hn::Sub(half, y));
+        const IVec in_cell = hn::Set(d, kCellSize - 1);
+        const IVec texel = hn::Add(hn::ShiftLeft<5>(hn::And(py, in_cell)), hn::And(px, in_cell));
+        const IVec index = hn::Add(hn::ShiftLeft<2>(texel), quarter);
+        return {hn::Add(hn::ShiftLeft<16>(hn::ShiftRight<5>(py)), hn::ShiftRight<5>(px)), index};
+    }
+
+    // Calls visit(lanes, cell) for each cell of the map that wanted lanes lie in.
+    template <class Visit>
+    HWY_INLINE void for_each_cell(F f, IVec key, Mask wanted, const Visit& visit) const {
+        const I d;
+        HWY_ALIGN std::int32_t keys[kWidth];
+        hn::Store(key, d, keys);
+        while (!hn::AllFalse(f, wanted)) {
+            const std::int32_t next = keys[hn::FindKnownFirstTrue(f, wanted)];
+            const Mask here = hn::And(wanted, hn::RebindMask(f, hn::Eq(key, hn::Set(d, next))));
+            visit(here, receiver_.cell(exponent_, limit_, next));
+            wanted = hn::AndNot(here, wanted);
+        }
+    }
+
+    // Time of the map's samples there.
+    HWY_INLINE Vec times(F f, const Texels& at, Mask wanted) const {
+        Vec t = hn::Zero(f);
+        for_each_cell(f, at.key, wanted, [&](Mask here, const ShadowReceiver::Cell& cell) HWY_ATTR {
+            t = hn::IfThenElse(here, hn::GatherIndex(f, cell.samples->t, at.index), t);
+        });
+        return t;
+    }
+
+    // A map sample tells of the point only if the point is there at the sample's time: texels along the way are tried
+    // until one is. Returns how far along.
+    HWY_INLINE Vec search(F f, Vec x, Vec y, Vec way_x, Vec way_y, Vec tau, IVec q, Mask wanted) const {
+        const Vec far = hn::Set(f, 0.5f), one = hn::Set(f, 1.0f);
+        Mask open = hn::And(wanted, hn::Gt(hn::Max(hn::Abs(way_x), hn::Abs(way_y)), far));
+        Vec least = hn::Set(f, INFINITY), best = tau;
+        const Vec quarter = hn::ConvertTo(f, q);
+        for (int attempt = 0; attempt < kAttempts && !hn::AllFalse(f, open); ++attempt) {
+            const Texels at = texels(f, plus_product(x, tau, way_x), plus_product(y, tau, way_y), q);
+            const Vec then = hn::Sub(hn::Mul(times(f, at, open), hn::Set(f, kSamples)), quarter);
+            const Vec late = hn::Sub(then, tau);
+            const Vec miss = hn::Max(hn::Abs(hn::Mul(late, way_x)), hn::Abs(hn::Mul(late, way_y)));
+            const Mask better = hn::And(open, hn::Lt(miss, least));
+            least = hn::IfThenElse(better, miss, least);
+            best = hn::IfThenElse(better, tau, best);
+            open = hn::And(open, hn::Not(hn::Le(miss, far)));
+            tau = hn::Add(tau, hn::Set(f, 0.618034f));
+            tau = hn::IfThenElse(hn::Ge(tau, one), hn::Sub(tau, one), tau);
+        }
+        return best;
+    }
+
+    // Two numbers in [0, 1/2), the same for the four lanes of a quarter.
+    HWY_INLINE void jitter(F f, IVec quarter, Vec& x, Vec& y) const {
+        const U u;
+        // mix() of sample/net.h
+        auto h = hn::Add(hn::Set(u, seed_), hn::BitCast(u, hn::ShiftLeft<1>(quarter)));
+        h = hn::Mul(hn::Xor(h, hn::ShiftRight<16>(h)), hn::Set(u, 0x7feb352du));
+        h = hn::Mul(hn::Xor(h, hn::ShiftRight<15>(h)), hn::Set(u, 0x846ca68bu));
+        h = hn::Xor(h, hn::ShiftRight<16>(h));
+        const Vec unit = hn::Set(f, 0.5f / 65536.0f);
+        const I d;
+        x = hn::Mul(hn::ConvertTo(f, hn::BitCast(d, hn::And(h, hn::Set(u, 0xffffu)))), unit);
+        y = hn::Mul(hn::ConvertTo(f, hn::BitCast(d, hn::ShiftRight<16>(h))), unit);
+    }
+
+    HWY_INLINE std::uint32_t compare(int first) {
+        const F f;
+        const I d;
+        const IVec q = quarter(d, first);
+        const Mask wanted = asked(d, q);
+        constexpr std::uint32_t kEvery = kWidth < 16 ? (1u << kWidth) - 1 : 0xffff;
+        if (hn::AllFalse(f, wanted)) return kEvery;
+
+        // One place in each quarter of a texel's square around the point: with one sample for each texel that is
+        // bilinear filtering, on the average.
+        const Vec half = hn::Set(f, 0.5f), scale = hn::Set(f, scale_);
+        const IVec corner = hn::And(hn::Iota(d, first), hn::Set(d, 3));
+        const Vec corner_x = hn::ConvertTo(f, hn::And(corner, hn::Set(d, 1)));
+        const Vec corner_y = hn::ConvertTo(f, hn::ShiftRight<1>(corner));
+        Vec jitter_x, jitter_y;
+        jitter(f, q, jitter_x, jitter_y);
+        const auto start = [&](const float* from, Vec jitter, Vec corner) HWY_ATTR {
+            const Vec shift = hn::Sub(plus_product(jitter, half, corner), half);
+            return plus_product(shift, hn::Load(f, from + first), scale);
+        };
+        Vec x = start(from_x_, jitter_x, corner_x), y = start(from_y_, jitter_y, corner_y);
+        if constexpr (kPath != Path::kStill) {
+            const Vec way_x = hn::Mul(hn::Load(f, way_x_ + first), scale),
+                      way_y = hn::Mul(hn::Load(f, way_y_ + first), scale);
+            Vec tau = plus_product(hn::Mul(half, jitter_x), hn::Set(f, 0.25f), hn::ConvertTo(f, corner));
+            tau = search(f, x, y, way_x, way_y, tau, q, wanted);
+            x = plus_product(x, tau, way_x);
+            y = plus_product(y, tau, way_y);
+        }
+
+        const Texels at = texels(f, x, y, q);
+        Vec occluder = hn::Set(f, INFINITY), sample_x = hn::Zero(f), sample_y = hn::Zero(f), t = hn::Zero(f);
+        for_each_cell(f, at.key, wanted, [&](Mask here, const ShadowReceiver::Cell& cell) HWY_ATTR {
+            occluder = hn::IfThenElse(here, hn::GatherIndex(f, cell.depths, at.index), occluder);
+            sample_x = hn::IfThenElse(here, hn::GatherIndex(f, cell.samples->x, at.index), sample_x);
+            sample_y = hn::IfThenElse(here, hn::GatherIndex(f, cell.samples->y, at.index), sample_y);
+            if constexpr (kPath != Path::kStill)
+                t = hn::IfThenElse(here, hn::GatherIndex(f, cell.samples->t, at.index), t);
+        });
+        if (hn::AllTrue(f, hn::Eq(occluder, hn::Set(f, INFINITY)))) return kEvery;
+        // From the middle of the cell to that of the map.
+        const IVec column = hn::And(at.key, hn::Set(d, 0xffff)), row = hn::ShiftRight<16>(at.key);
+        const Vec size = hn::Set(f, kCellSize), to_middle = hn::Set(f, half_ - 0.5f * kCellSize);
+        sample_x = hn::Add(sample_x, hn::Sub(hn::Mul(hn::ConvertTo(f, column), size), to_middle));
+        sample_y = hn::Add(sample_y, hn::Sub(to_middle, hn::Mul(hn::ConvertTo(f, row), size)));
+        return bits_of(f, hn::Or(hn::Not(wanted), is_lit(f, first, sample_x, sample_y, t, occluder)));
+    }
+
+    // The plane of the triangle at the sample's time, seen where the sample is (as cover/exact.h does).
+    HWY_INLINE Mask is_lit(F f, int first, Vec sample_x, Vec sample_y, Vec t, Vec occluder) const {
+        Vec X[3], Y[3], z[3];
+        Vec b[3];
+        barycentrics(f, first, b);
+        const Vec scale = hn::Set(f, scale_);
+        const I d;
+        IVec index = hn::Zero(d);
+        Vec s = t;
+        if constexpr (kPath == Path::kInPieces) {
+            const Vec along = hn::Mul(t, hn::Set(f, static_cast<float>(receiver_.segments())));
+            const IVec segment = hn::Min(hn::ConvertTo(d, along), hn::Set(d, receiver_.segments() - 1));
+            s = hn::Sub(along, hn::ConvertTo(f, segment));
+            index = hn::Mul(segment, hn::Set(d, 9));
+        }
+        for (int k = 0; k < 3; ++k) {
+            Vec v[3];
+            for (int axis = 0; axis < 3; ++axis) {
+                const float* knot = receiver_.knots() + 3 * k + axis;
+                if constexpr (kPath == Path::kInPieces) {
+                    const Vec now = hn::GatherIndex(f, knot, index), next = hn::GatherIndex(f, knot + 9, index);
+                    v[axis] = plus_product(now, s, hn::Sub(next, now));
+                } else {
+                    v[axis] = hn::Set(f, knot[0]);
+                    if constexpr (kPath == Path::kStraight)
+                        v[axis] = plus_product(v[axis], s, hn::Set(f, knot[9] - knot[0]));
+                }
+                v[axis] = hn::Add(v[axis], hn::Set(f, offset_[axis]));
+            }
+            X[k] = hn::Sub(hn::Mul(v[0], scale), kPerspective ? hn::Mul(sample_x, v[2]) : sample_x);
+            Y[k] = hn::Sub(hn::Mul(v[1], scale), kPerspective ? hn::Mul(sample_y, v[2]) : sample_y);
+            z[k] = v[2];
+        }
+        const auto cross = [](Vec ax, Vec by, Vec bx, Vec ay)
+                               HWY_ATTR { return hn::Sub(hn::Mul(ax, by), hn::Mul(bx, ay)); };
+        const Vec e0 = cross(X[1], Y[2], X[2], Y[1]), e1 = cross(X[2], Y[0], X[0], Y[2]),
+                  e2 = cross(X[0], Y[1], X[1], Y[0]);
+        const auto sum = [&](Vec p, Vec q, Vec r)
+                             HWY_ATTR { return plus_product(plus_product(hn::Mul(p, z[0]), q, z[1]), r, z[2]); };
+        const Vec own = sum(b[0], b[1], b[2]);
+        Vec texel = hn::Set(f, 1.0f / scale_);
+        if constexpr (kPerspective) texel = hn::Mul(texel, own);
+        Vec depth = hn::Div(sum(e0, e1, e2), hn::Add(hn::Add(e0, e1), e2));
+        depth = hn::IfThenElse(hn::IsFinite(depth), depth, own);
+        depth = hn::Max(depth, hn::Sub(own, hn::Mul(hn::Set(f, kFarthestBefore), texel)));
+        depth = hn::Min(depth, plus_product(own, hn::Set(f, kFarthestBehind), texel));
+        return hn::Le(depth, plus_product(occluder, hn::Set(f, kBias), texel));
+    }
+
+    ShadowReceiver& receiver_;
+    const ShadowPoint& point_;
+    std::uint32_t seed_;
+    float offset_[3], half_, scale_ = 1.0f;
+    int exponent_ = 0, limit_ = 0;
+    HWY_ALIGN float from_x_[kAll], from_y_[kAll], way_x_[kAll], way_y_[kAll];
+};
+
+template <Path kPath>
+std::uint32_t lit_along(ShadowReceiver& receiver, const ShadowPoint& point, std::uint32_t seed) {
+    if (receiver.map().view().perspective) return Lookup<kPath, true>(receiver, point, seed).lit();
+    return Lookup<kPath, false>(receiver, point, seed).lit();
+}
+
+std::uint32_t lit_lanes(ShadowReceiver& receiver, const ShadowPoint& point, std::uint32_t seed) {
+    switch (receiver.path()) {
+        case Path::kStill:
+            return lit_along<Path::kStill>(receiver, point, seed);
+        case Path::kStraight:
+            return lit_along<Path::kStraight>(receiver, point, seed);
+        case Path::kInPieces:
+            break;
+    }
+    return lit_along<Path::kInPieces>(receiver, point, seed);
+}
+
+}  // namespace
+
+ShadowLookup lookup() {
+    return lit_lanes;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace pentaprism
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pentaprism {
+
+// In double as the casters are (casters.cpp): a surface that casts and receives is the same.
+void ShadowReceiver::start(const WorldMotion& world, std::uint32_t triangle, const ShadowMap& map) {
+    const Part& part = world.parts[world.part_of[triangle]];
+    map_ = &map;
+    key_ = -1;
+    segments_ = part.moves ? part.segments : 1;
+    path_ = !part.moves ? Path::kStill : segments_ == 1 ? Path::kStraight : Path::kInPieces;
+    const LightView& view = map.view();
+    knots_.clear();
+    for (int knot = 0; knot < (part.moves ? segments_ + 1 : 1); ++knot)
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t at = world.corners[3 * std::size_t{triangle} + k] + knot * part.vertex_count;
+            const glm::dvec3 p = glm::dvec3(world.points[at]) - view.position;
+            for (int axis = 0; axis < 3; ++axis) knots_.push_back(static_cast<float>(glm::dot(p, view.axes[axis])));
+        }
+    if (!part.moves) return;
+    for (int border = 0; border <= ShadowMap::kSamples; ++border) {
+        const float along = static_cast<float>(border * segments_) / ShadowMap::kSamples;
+        const int segment = std::min(static_cast<int>(along), segments_ - 1);
+        const float s = along - static_cast<float>(segment);
+        const float *now = &knots_[9 * segment], *next = now + 9;
+        for (int i = 0; i < 9; ++i) borders_[9 * border + i] = now[i] + s * (next[i] - now[i]);
+    }
+}
+
+ShadowLookup shadow_lookup() {
+    switch (cpu_isa()) {
+#ifndef PENTAPRISM_SCALAR_ONLY
+#if HWY_TARGETS & HWY_AVX3
+        case Isa::kAvx512:
+            return N_AVX3::lookup();
+#endif
+#if HWY_TARGETS & HWY_AVX2
+        case Isa::kAvx2:
+            return N_AVX2::lookup();
+#endif
+#endif
+        default:
+            return HWY_STATIC_DISPATCH(lookup)();
+    }
+}
+
+}  // namespace pentaprism
+#endif
