@@ -24,3 +24,22 @@ if(PENTAPRISM_EMBREE)
     set(PENTAPRISM_HAVE_EMBREE ON)
   endif()
 endif()
+
+set(PENTAPRISM_HAVE_MPI OFF)
+if(PENTAPRISM_MPI)
+  set(MPI_CXX_SKIP_MPICXX ON)  # C's interface is all that is used
+  find_package(MPI QUIET COMPONENTS CXX)
+  if(TARGET MPI::MPI_CXX)
+    set(PENTAPRISM_HAVE_MPI ON)
+  endif()
+endif()
+
+set(PENTAPRISM_HAVE_GL OFF)
+if(PENTAPRISM_GL)
+  # libEGL itself is opened when it is asked for, so that the program starts without it.
+  pkg_check_modules(epoxy QUIET IMPORTED_TARGET epoxy)
+  pkg_check_modules(egl QUIET egl)
+  if(TARGET PkgConfig::epoxy AND egl_FOUND)
+    set(PENTAPRISM_HAVE_GL ON)
+  endif()
+endif()

@@ -61,4 +61,8 @@ void write_text_file(const std::filesystem::path& file, std::string_view text);
 /// and what the header tells of shutter and lens. Throws Error(kScene).
 Picture read_picture(const std::filesystem::path& file);
 
+/// What a picture's header says of how it was made: settings_json and software, empty where it does not. Throws
+/// Error(kScene).
+FileMetadata read_metadata(const std::filesystem::path& file);
+
 }  // namespace pentaprism

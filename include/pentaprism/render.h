@@ -65,8 +65,12 @@ class RowSink {
 /// the frame: render_frame throws Error(kRender) "interrupted".
 using Progress = std::function<bool(double done)>;
 
+class ByteSink;
 class Environment;
+class FrameTiles;
 class Textures;
+struct FileMetadata;
+struct Shard;
 
 /// Renders frames of one scene and keeps between them what does not change, such as filtered textures.
 class Renderer {
@@ -79,7 +83,15 @@ class Renderer {
     void render(const RenderSettings& settings, double frame, RowSink& sink, RenderStats& stats,
                 const Progress& progress = {});
 
+    /// Part of a frame, as bytes that ShardMerger (pentaprism/shard.h) makes the picture of. `metadata` is for the
+    /// file that the picture will be written to. The statistics are those of the part.
+    void render_shard(const RenderSettings& settings, double frame, const Shard& shard, const FileMetadata& metadata,
+                      ByteSink& out, RenderStats& stats, const Progress& progress = {});
+
   private:
+    void run(const RenderSettings& settings, double frame, RenderStats& stats,
+             const std::function<void(FrameTiles&)>& body);
+
     const Scene& scene_;
     std::shared_ptr<const Textures> textures_;
     std::shared_ptr<const Environment> environment_;

@@ -16,8 +16,9 @@ void add_verify(CLI::App& program, Run& run);
 void add_bench(CLI::App& program, Run& run);
 void add_experiment(CLI::App& program, Run& run);
 void add_compare(CLI::App& program, Run& run);
+void add_merge(CLI::App& program, Run& run);
 
-/// Commands of the contract that are refused by name: merge, view.
+/// Commands of the contract that are refused by name: view.
 void add_planned_commands(CLI::App& program, Run& run);
 
 }  // namespace pentaprism::cli

@@ -2,6 +2,7 @@
 // twins.
 
 #include <algorithm>
+#include <charconv>
 #include <fmt/format.h>
 #include <fstream>
 #include <memory>
@@ -11,6 +12,8 @@
 #include <pentaprism/metadata.h>
 
 #include "cli/frame_output.h"
+#include "cli/progress.h"
+#include "cli/resume.h"
 #include "cli/tee.h"
 
 namespace pentaprism::cli {
@@ -70,11 +73,6 @@ class Collector : public Tee {
     std::size_t pixels_ = 0;
 };
 
-// Part `pass` of `passes` of a frame.
-Progress part_of(const Progress& progress, int pass, int passes) {
-    return [&progress, pass, passes](double done) { return !progress || progress((pass + done) / passes); };
-}
-
 Json camera_json(const FrameInfo& info) {
     Json json;
     json["frame"] = info.frame;
@@ -99,9 +97,18 @@ Json camera_json(const FrameInfo& info) {
     return json;
 }
 
+// Of frames/NNNN.json; -1 for another name.
+std::int64_t number_of(const fs::path& file) {
+    const std::string text = file.stem().string();
+    std::int64_t number = -1;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return error == std::errc() && end == text.data() + text.size() ? number : -1;
+}
+
 class Dataset : public FrameOutput {
   public:
-    Dataset(const FrameSource& source, const fs::path& folder) : source_(source), folder_(folder) {
+    Dataset(const FrameSource& source, const fs::path& folder, const std::optional<Shard>& shard)
+        : source_(source), folder_(folder), shard_(shard) {
         source_.settings.image.aovs = kAovs;
         for (const char* kind : kFolders) {
             std::error_code error;
@@ -114,6 +121,7 @@ class Dataset : public FrameOutput {
 
     std::string name(std::int64_t frame) const override { return file("blur", frame, ".exr").string(); }
     bool exists(std::int64_t frame) const override { return fs::exists(file("frames", frame, ".json")); }
+    void check_resumable(std::span<const std::int64_t> frames) const override;
     RenderStats render(Renderer& renderer, std::int64_t frame, const Progress& progress) override;
     void finish() override;
 
@@ -122,14 +130,24 @@ class Dataset : public FrameOutput {
         return folder_ / kind / fmt::format("{:04}{}", frame, suffix);
     }
     void write_numbers(std::int64_t frame, const Collector& collector) const;
+    Json hashes_of(std::int64_t frame) const;
+    std::vector<fs::path> whole_frames() const;
+    void write_summary(const std::vector<fs::path>& frames) const;
+    void write_shared(const char* name, const Json& json) const;
 
     FrameSource source_;
     fs::path folder_;
+    std::optional<Shard> shard_;
 };
+
+// All that the manifest will cover, whether they are asked for now or not.
+void Dataset::check_resumable(std::span<const std::int64_t>) const {
+    for (const fs::path& frame : whole_frames()) check_made_with(frame, source_.metadata(source_.at(number_of(frame))));
+}
 
 RenderStats Dataset::render(Renderer& renderer, std::int64_t frame, const Progress& progress) {
     constexpr int kPasses = 4;
-    const RenderSettings& settings = source_.settings;
+    const RenderSettings settings = source_.at(frame);
     Collector collector({file("blur", frame, ".exr"), file("blur", frame, ".png")}, settings.image,
                         source_.metadata(settings));
     RenderStats stats;
@@ -141,19 +159,22 @@ RenderStats Dataset::render(Renderer& renderer, std::int64_t frame, const Progre
         {"sharp", SharpMoment::kMiddle}, {"sharp-open", SharpMoment::kOpen}, {"sharp-close", SharpMoment::kClose}};
     int pass = 1;
     for (const auto& [kind, moment] : twins)
-        render_sharp(renderer, source_, collector.info, moment, {file(kind, frame, ".exr"), file(kind, frame, ".png")},
-                     part_of(progress, pass++, kPasses));
+        render_sharp(renderer, source_, settings, collector.info, moment,
+                     {file(kind, frame, ".exr"), file(kind, frame, ".png")}, part_of(progress, pass++, kPasses));
 
     Json json = camera_json(collector.info);
     for (const auto& [name, value] : collector.info.attributes)
         if (name == "objects" || name == "materials") json[name] = Json::parse(value);
+    json["software"] = source_.software;
+    json["settings"] = Json::parse(source_.metadata(settings).settings_json);
+    json["files"] = hashes_of(frame);
     write_text_file(file("frames", frame, ".json"), dump(json));
     return stats;
 }
 
 void Dataset::write_numbers(std::int64_t frame, const Collector& collector) const {
     const FrameInfo& info = collector.info;
-    const FileMetadata about = source_.metadata(source_.settings);
+    const FileMetadata about = source_.metadata(source_.at(frame));
     const int width = info.x1 - info.x0, height = info.y1 - info.y0;
     std::vector<DataPlane> depth{{"Z", false, collector.depth}};
     write_npy(file("depth", frame, ".npy"), width, height, depth);
@@ -171,25 +192,53 @@ void Dataset::write_numbers(std::int64_t frame, const Collector& collector) cons
     write_data_exr(file("ids", frame, ".exr"), width, height, ids, about);
 }
 
-// manifest.json and camera.json, over all frames that the folder holds whole.
-void Dataset::finish() {
+// What `xxh128sum` prints of each file of a frame, but for the one that will hold this.
+Json Dataset::hashes_of(std::int64_t frame) const {
+    Json hashes = Json::object();
+    for (const char* kind : kFolders)
+        for (const char* suffix : {".exr", ".png", ".npy", ".flo"})
+            if (const fs::path path = file(kind, frame, suffix); fs::exists(path))
+                hashes[path.lexically_relative(folder_).generic_string()] = scene_hash(path.string());
+    return hashes;
+}
+
+std::vector<fs::path> Dataset::whole_frames() const {
     std::vector<fs::path> frames;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "frames"))
-        if (entry.path().extension() == ".json") frames.push_back(entry.path());
+        if (entry.path().extension() == ".json" && number_of(entry.path()) >= 0) frames.push_back(entry.path());
     std::sort(frames.begin(), frames.end());
+    return frames;
+}
+
+// Shards that end at the same time may each miss the other's last frame. Who writes last has seen all: a frame's file
+// is there before its process comes here, and who missed it writes once more.
+void Dataset::finish() {
+    std::vector<fs::path> frames;
+    do {
+        frames = whole_frames();
+        write_summary(frames);
+    } while (frames != whole_frames());
+}
+
+// manifest.json and camera.json, over all frames that the folder holds whole.
+void Dataset::write_summary(const std::vector<fs::path>& frames) const {
     Json cameras = Json::array(), files = Json::object();
     for (const fs::path& frame : frames) {
         std::ifstream in(frame);
-        cameras.push_back(Json::parse(in));
-        for (const char* kind : kFolders)
-            for (const char* suffix : {".exr", ".png", ".npy", ".flo", ".json"}) {
-                const fs::path name = fs::path(kind) / (frame.stem().string() + suffix);
-                if (fs::exists(folder_ / name)) files[name.generic_string()] = scene_hash((folder_ / name).string());
-            }
+        Json json = Json::parse(in, nullptr, false);
+        if (!json.is_object() || !json.contains("files"))
+            throw Error(ErrorKind::kOutput, fmt::format("{}: cannot read what a whole frame has; remove it and "
+                                                        "render the frame again",
+                                                        frame.string()));
+        files.update(json["files"]);
+        files[frame.lexically_relative(folder_).generic_string()] = scene_hash(frame.string());
+        json.erase("files");
+        cameras.push_back(std::move(json));
     }
     Json manifest;
     manifest["software"] = source_.software;
     manifest["settings"] = Json::parse(settings_json(source_.settings, source_.scene, source_.scene_hash));
+    if (source_.randomization) manifest["randomize"] = Json::parse(randomization_json(*source_.randomization));
     manifest["frames"] = frames.size();
     manifest["depth_png"] = "millimetres, 65535 for that and more, 0 where nothing is hit";
     manifest["flow"] =
@@ -197,14 +246,24 @@ void Dataset::finish() {
     manifest["coc"] = "signed radius in pixels, negative in front of the focus plane";
     manifest["hash"] = "XXH3, 128 bits";
     manifest["files"] = files;
-    write_text_file(folder_ / "camera.json", dump({{"frames", cameras}}));
-    write_text_file(folder_ / "manifest.json", dump(manifest));
+    write_shared("camera.json", {{"frames", cameras}});
+    write_shared("manifest.json", manifest);
+}
+
+// Several shards may write it at once: each under a name of its own first.
+void Dataset::write_shared(const char* name, const Json& json) const {
+    const fs::path final_name = folder_ / name;
+    if (!shard_) return write_text_file(final_name, dump(json));
+    const fs::path own_name = shard_name(final_name, *shard_);
+    write_text_file(own_name, dump(json));
+    fs::rename(own_name, final_name);
 }
 
 }  // namespace
 
-std::unique_ptr<FrameOutput> make_dataset_output(const FrameSource& source, const fs::path& folder) {
-    return std::make_unique<Dataset>(source, folder);
+std::unique_ptr<FrameOutput> make_dataset_output(const FrameSource& source, const fs::path& folder,
+                                                 const std::optional<Shard>& shard) {
+    return std::make_unique<Dataset>(source, folder, shard);
 }
 
 }  // namespace pentaprism::cli

@@ -4,8 +4,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <pentaprism/image.h>
+#include <pentaprism/randomize.h>
 #include <pentaprism/render.h>
+#include <pentaprism/shard.h>
+#include <span>
 #include <string>
 
 namespace pentaprism::cli {
@@ -14,6 +18,9 @@ namespace pentaprism::cli {
 struct FrameSource {
     RenderSettings settings;
     std::string scene, scene_hash, software;
+    std::optional<Randomization> randomization;
+    /// The settings of a frame.
+    RenderSettings at(std::int64_t frame) const;
     FileMetadata metadata(const RenderSettings& of) const;
 };
 
@@ -24,6 +31,8 @@ class FrameOutput {
     virtual std::string name(std::int64_t frame) const = 0;
     /// All its files are there, whole.
     virtual bool exists(std::int64_t frame) const = 0;
+    /// For --resume: throws Error(kUsage) for a file that is there and was made with other settings.
+    virtual void check_resumable(std::span<const std::int64_t> frames) const = 0;
     virtual RenderStats render(Renderer& renderer, std::int64_t frame, const Progress& progress) = 0;
     /// After the last frame.
     virtual void finish() {}
@@ -34,13 +43,31 @@ class FrameOutput {
 std::unique_ptr<FrameOutput> make_picture_output(const FrameSource& source, const std::filesystem::path& out,
                                                  bool sharp);
 
-/// Makes the folders. Of a frame the file frames/NNNN.json is written last: what has it is whole.
-std::unique_ptr<FrameOutput> make_dataset_output(const FrameSource& source, const std::filesystem::path& folder);
+/// Makes the folders. Of a frame the file frames/NNNN.json is written last: what has it is whole. `shard`: others write
+/// into the folder at the same time.
+std::unique_ptr<FrameOutput> make_dataset_output(const FrameSource& source, const std::filesystem::path& folder,
+                                                 const std::optional<Shard>& shard);
+
+/// Part of the frame `out`, as a file beside it.
+std::unique_ptr<FrameOutput> make_shard_output(const FrameSource& source, const std::filesystem::path& out,
+                                               const Shard& shard);
+
+/// The whole frame `out` by MPI processes together; the first one writes it.
+struct Ranks;
+std::unique_ptr<FrameOutput> make_ranks_output(const FrameSource& source, const std::filesystem::path& out,
+                                               const Ranks& ranks);
+
+/// a.exr.2-of-4.shard of a.exr.
+std::filesystem::path shard_name(const std::filesystem::path& picture, const Shard& shard);
+/// "2/4". Throws Error(kUsage).
+Shard parse_shard(const std::string& text);
+/// Every count-th of them.
+std::vector<std::int64_t> frames_of(const std::vector<std::int64_t>& frames, const Shard& shard);
 
 /// The scene at one moment of the open shutter through a pinhole: the same geometry, camera, places of samples in their
-/// pixels and seed. `info` is that of the blurred frame; the same pixels go to all `files`.
+/// pixels and seed. `blurred` and `info` are those of the blurred frame; the same pixels go to all `files`.
 enum class SharpMoment { kOpen, kMiddle, kClose };
-void render_sharp(Renderer& renderer, const FrameSource& source, const FrameInfo& info, SharpMoment moment,
-                  const std::vector<std::filesystem::path>& files, const Progress& progress);
+void render_sharp(Renderer& renderer, const FrameSource& source, const RenderSettings& blurred, const FrameInfo& info,
+                  SharpMoment moment, const std::vector<std::filesystem::path>& files, const Progress& progress);
 
 }  // namespace pentaprism::cli

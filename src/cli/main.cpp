@@ -12,6 +12,7 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
+#include "cli/ranks.h"
 
 namespace pentaprism::cli {
 namespace {
@@ -62,6 +63,7 @@ int run_program(int argc, char** argv) {
     add_bench(program, run);
     add_experiment(program, run);
     add_compare(program, run);
+    add_merge(program, run);
     add_planned_commands(program, run);
     try {
         program.parse(argc, argv);
@@ -76,9 +78,9 @@ int run_program(int argc, char** argv) {
     return run();
 }
 
-int guarded_main(int argc, char** argv) {
+int report_failure() {
     try {
-        return run_program(argc, argv);
+        throw;
     } catch (const Error& error) {
         if (caught_signal() != 0) {
             print_error("interrupted; what was finished is kept");
@@ -92,6 +94,16 @@ int guarded_main(int argc, char** argv) {
         print_error(fmt::format("internal error: {}", error.what()));
     }
     return static_cast<int>(ErrorKind::kRender);
+}
+
+int guarded_main(int argc, char** argv) {
+    try {
+        return run_program(argc, argv);
+    } catch (...) {
+        const int code = report_failure();
+        abort_ranks(code);
+        return code;
+    }
 }
 
 }  // namespace

@@ -16,8 +16,6 @@ CLI::Option* add_value(CLI::App& command, const std::string& group, const std::s
 /// An option or value of the contract that is refused by name until its feature is built.
 void add_planned_value(CLI::App& command, const std::string& group, const std::string& names, const std::string& form,
                        const std::string& description);
-void add_planned_flag(CLI::App& command, const std::string& group, const std::string& names,
-                      const std::string& description);
 [[noreturn]] void refuse_as_planned(const std::string& what);
 
 void add_scene_argument(CLI::App& command, std::string& scene);

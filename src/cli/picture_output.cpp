@@ -4,6 +4,8 @@
 #include <pentaprism/metadata.h>
 
 #include "cli/frame_output.h"
+#include "cli/progress.h"
+#include "cli/resume.h"
 #include "cli/tee.h"
 
 namespace pentaprism::cli {
@@ -22,6 +24,17 @@ class RememberingTee : public Tee {
     }
 };
 
+// A pinhole and a shutter that is open for no time, at the moment that is asked for, everywhere.
+RenderSettings sharp_settings(RenderSettings settings) {
+    settings.image.aovs.clear();
+    settings.camera.defocus = false;
+    settings.shutter.shutter = 0.0;
+    settings.shutter.rolling = RollingShutter::kNone;
+    settings.shutter.rolling_duration.reset();
+    settings.shutter.curve.clear();
+    return settings;
+}
+
 class PictureOutput : public FrameOutput {
   public:
     PictureOutput(const FrameSource& source, const fs::path& out, bool sharp)
@@ -32,14 +45,26 @@ class PictureOutput : public FrameOutput {
         const fs::path file = frame_file(out_, frame);
         return fs::exists(file) && (!sharp_ || fs::exists(twin_of(file)));
     }
+    void check_resumable(std::span<const std::int64_t> frames) const override {
+        for (const std::int64_t frame : frames) {
+            const fs::path file = frame_file(out_, frame);
+            const RenderSettings settings = source_.at(frame);
+            check_made_with(file, source_.metadata(settings));
+            if (sharp_) check_made_with(twin_of(file), source_.metadata(sharp_settings(settings)));
+        }
+    }
     RenderStats render(Renderer& renderer, std::int64_t frame, const Progress& progress) override {
         const fs::path file = frame_file(out_, frame);
-        RememberingTee tee({file}, source_.settings.image, source_.metadata(source_.settings));
+        const RenderSettings settings = source_.at(frame);
+        RememberingTee tee({file}, settings.image, source_.metadata(settings));
         RenderStats stats;
-        renderer.render(source_.settings, static_cast<double>(frame), tee, stats, progress);
+        const int passes = sharp_ ? 2 : 1;
+        renderer.render(settings, static_cast<double>(frame), tee, stats, part_of(progress, 0, passes));
         tee.finish();
         stats.times_ms["write"] = tee.milliseconds();
-        if (sharp_) render_sharp(renderer, source_, tee.info, SharpMoment::kMiddle, {twin_of(file)}, progress);
+        if (sharp_)
+            render_sharp(renderer, source_, settings, tee.info, SharpMoment::kMiddle, {twin_of(file)},
+                         part_of(progress, 1, passes));
         return stats;
     }
 
@@ -55,6 +80,10 @@ class PictureOutput : public FrameOutput {
 
 }  // namespace
 
+RenderSettings FrameSource::at(std::int64_t frame) const {
+    return randomization ? randomized(settings, *randomization, frame) : settings;
+}
+
 FileMetadata FrameSource::metadata(const RenderSettings& of) const {
     FileMetadata metadata;
     metadata.software = software;
@@ -62,15 +91,9 @@ FileMetadata FrameSource::metadata(const RenderSettings& of) const {
     return metadata;
 }
 
-void render_sharp(Renderer& renderer, const FrameSource& source, const FrameInfo& info, SharpMoment moment,
-                  const std::vector<fs::path>& files, const Progress& progress) {
-    RenderSettings settings = source.settings;
-    settings.image.aovs.clear();
-    settings.camera.defocus = false;
-    settings.shutter.shutter = 0.0;  // open for no time, at the moment that is asked for, everywhere
-    settings.shutter.rolling = RollingShutter::kNone;
-    settings.shutter.rolling_duration.reset();
-    settings.shutter.curve.clear();
+void render_sharp(Renderer& renderer, const FrameSource& source, const RenderSettings& blurred, const FrameInfo& info,
+                  SharpMoment moment, const std::vector<fs::path>& files, const Progress& progress) {
+    const RenderSettings settings = sharp_settings(blurred);
     const double time = moment == SharpMoment::kOpen    ? info.shutter_open
                         : moment == SharpMoment::kClose ? info.shutter_close
                                                         : 0.5 * (info.shutter_open + info.shutter_close);

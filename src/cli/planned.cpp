@@ -7,7 +7,6 @@ namespace pentaprism::cli {
 
 void add_planned_commands(CLI::App& program, Run& run) {
     const std::pair<const char*, const char*> planned[] = {
-        {"merge", "Join shards (not built yet)"},
         {"view", "The interactive viewer (not built yet)"},
     };
     for (const auto& [name, description] : planned) {

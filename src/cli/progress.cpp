@@ -82,6 +82,10 @@ ProgressStyle resolve_style(const Verbosity& verbosity) {
     return ::isatty(STDERR_FILENO) ? ProgressStyle::kTty : ProgressStyle::kPlain;
 }
 
+Progress part_of(const Progress& progress, int pass, int passes) {
+    return [&progress, pass, passes](double done) { return !progress || progress((pass + done) / passes); };
+}
+
 ProgressReporter::ProgressReporter(const Verbosity& verbosity, std::size_t frames)
     : style_(resolve_style(verbosity)), frames_(frames) {}
 

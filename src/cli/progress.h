@@ -21,6 +21,9 @@ void add_verbosity_options(CLI::App& command, Verbosity& verbosity);
 /// What kAuto comes down to: by -q and by what stderr is.
 ProgressStyle resolve_style(const Verbosity& verbosity);
 
+/// Part `pass` of `passes` of a frame.
+Progress part_of(const Progress& progress, int pass, int passes);
+
 class ProgressReporter {
   public:
     ProgressReporter(const Verbosity& verbosity, std::size_t frames);

@@ -5,20 +5,24 @@
 #include <fmt/format.h>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <pentaprism/aov.h>
 #include <pentaprism/error.h>
 #include <pentaprism/frames.h>
 #include <pentaprism/image.h>
 #include <pentaprism/metadata.h>
+#include <pentaprism/randomize.h>
 #include <pentaprism/render.h>
-#include <unistd.h>
+#include <pentaprism/shard.h>
 
 #include "cli/commands.h"
 #include "cli/frame_output.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/options.h"
+#include "cli/output_names.h"
 #include "cli/progress.h"
+#include "cli/ranks.h"
 #include "cli/values.h"
 
 namespace pentaprism::cli {
@@ -38,43 +42,40 @@ struct RenderCommand {
     fs::path out, stats, dataset;
     bool sharp = false;
     std::vector<std::int64_t> frames{0};
-    bool overwrite = false, skip_existing = false;
+    bool overwrite = false, skip_existing = false, resume = false;
     Verbosity verbosity;
+    std::optional<Randomization> randomization;
+    std::optional<Shard> shard;
+    Ranks ranks;
+    /// One frame is shared out by its tiles, several are dealt out whole.
+    bool shards_a_frame() const { return shard && frames.size() == 1; }
+    std::vector<std::int64_t> my_frames() const {
+        return shard && !shards_a_frame() ? frames_of(frames, *shard) : frames;
+    }
+    bool leaves_existing() const { return skip_existing || resume; }
 };
-
-/// What can be known of a failing output before hours of rendering is said before.
-void check_output_name(const fs::path& file, const char* option) {
-    std::error_code ignored;
-    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-    const auto refuse = [&](const std::string& why) {
-        throw Error(ErrorKind::kOutput, fmt::format("{} {}: cannot write ({})", option, file.string(), why));
-    };
-    if (!fs::exists(folder, ignored))
-        refuse(fmt::format("the folder {} does not exist; make it first", folder.string()));
-    if (!fs::is_directory(folder, ignored)) refuse(fmt::format("{} is not a folder", folder.string()));
-    if (::access(folder.c_str(), W_OK | X_OK) != 0)
-        refuse(fmt::format("the folder {} cannot be written to", folder.string()));
-    if (fs::is_directory(file, ignored)) refuse("it is a folder");
-}
 
 void check_names(const RenderCommand& command) {
     if (command.out.empty() && command.dataset.empty())
         throw Error(ErrorKind::kUsage, "--output is required, and must end in .exr or .png (or give --dataset DIR)");
     if (!command.out.empty() && !command.dataset.empty())
         throw Error(ErrorKind::kUsage, "--output and --dataset exclude each other: a data set has names of its own");
-    if (!command.stats.empty()) check_output_name(frame_file(command.stats, command.frames.front()), "--stats");
+    if (!command.stats.empty()) {
+        check_output_name(frame_file(command.stats, command.frames.front()), "--stats");
+        if (command.shard && command.frames.size() > 1 && !has_frame_number(command.stats))
+            throw Error(ErrorKind::kUsage,
+                        "--stats: a part of a sequence needs a place for the frame's number, such as s.####.json");
+    }
     if (!command.dataset.empty()) {
         if (!command.settings.image.aovs.empty() || command.sharp)
             throw Error(ErrorKind::kUsage, "--dataset holds its own --aov and --sharp; leave them out");
+        if (command.shards_a_frame())
+            throw Error(ErrorKind::kUsage, "--shard: a --dataset is shared out by its frames; give several");
         return;
     }
-    if (!is_picture_name(command.out)) {
-        throw Error(ErrorKind::kUsage,
-                    fmt::format("--output {}: the name must end in .exr or .png", command.out.string()));
-    }
-    if (!command.settings.image.aovs.empty() && !is_exr_name(command.out))
-        throw Error(ErrorKind::kUsage,
-                    fmt::format("--aov: only .exr files hold more than a picture, not {}", command.out.string()));
+    check_picture_name(command.out, !command.settings.image.aovs.empty());
+    if (command.shards_a_frame() && command.sharp)
+        throw Error(ErrorKind::kUsage, "--sharp: a part of a frame has no twin; shard several frames, or leave it out");
     if (command.frames.size() > 1 && !has_frame_number(command.out)) {
         throw Error(ErrorKind::kUsage,
                     fmt::format("--output {}: {} frames need a place for their number, such as a.####{}",
@@ -109,8 +110,45 @@ std::string to_text(const Json& json) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+// Leaves out the frames that need no work. All are looked at before the first is rendered: a directory of other
+// settings is refused at once, and the time left counts what is left.
+std::vector<std::int64_t> frames_to_do(const RenderCommand& command, const FrameOutput& output,
+                                       ProgressReporter& progress) {
+    const std::vector<std::int64_t> all = command.my_frames();
+    if (!command.leaves_existing()) return all;
+    if (command.resume) output.check_resumable(all);
+    std::vector<std::int64_t> frames;
+    for (const std::int64_t frame : all) {
+        if (output.exists(frame))
+            progress.skip_frame(frame, output.name(frame));
+        else
+            frames.push_back(frame);
+    }
+    return frames;
+}
+
+// MPI processes share out the work as shards do.
+void share_with_ranks(RenderCommand& command) {
+    command.ranks = join_ranks();
+    if (command.ranks.alone()) return;
+    if (command.shard)
+        throw Error(ErrorKind::kUsage, "--shard: mpirun shares out the work already; leave one of them out");
+    command.shard = Shard{command.ranks.rank, command.ranks.size};
+    if (!command.ranks.first()) command.verbosity.progress = ProgressStyle::kNone;
+}
+
+std::unique_ptr<FrameOutput> make_output(const RenderCommand& command, const FrameSource& source) {
+    if (!command.dataset.empty()) return make_dataset_output(source, command.dataset, command.shard);
+    if (command.shards_a_frame())
+        return command.ranks.alone() ? make_shard_output(source, command.out, *command.shard)
+                                     : make_ranks_output(source, command.out, command.ranks);
+    return make_picture_output(source, command.out, command.sharp);
+}
+
 int render(RenderCommand& command) {
     complete_settings(command.settings);
+    share_with_ranks(command);
+    if (command.randomization) check_randomization(command.settings, *command.randomization);
     check_names(command);
     const Clock::time_point load_start = Clock::now();
     const Scene scene = load_scene(command.scene);
@@ -119,25 +157,24 @@ int render(RenderCommand& command) {
     print_info(fmt::format("{}: {} triangles, read in {:.0f} ms", scene.name, count_triangles(scene), load_ms));
     throw_if_interrupted();
 
-    const FrameSource source{command.settings, scene.name, scene_hash(command.scene), "pentaprism " PENTAPRISM_VERSION};
-    const std::unique_ptr<FrameOutput> output = command.dataset.empty()
-                                                    ? make_picture_output(source, command.out, command.sharp)
-                                                    : make_dataset_output(source, command.dataset);
+    const FrameSource source{command.settings, scene.name, scene_hash(command.scene), "pentaprism " PENTAPRISM_VERSION,
+                             command.randomization};
+    const std::unique_ptr<FrameOutput> output = make_output(command, source);
     set_picture_threads(command.settings.method.threads == 1 ? 0 : 2);
 
     const bool stats_for_each_frame = has_frame_number(command.stats);
     Json all_stats = Json::array();
-    ProgressReporter progress(command.verbosity, command.frames.size());
+    ProgressReporter progress(command.verbosity, command.my_frames().size());
     Renderer renderer(scene);
-    for (const std::int64_t frame : command.frames) {
-        if (command.skip_existing && output->exists(frame)) {
+    for (const std::int64_t frame : frames_to_do(command, *output, progress)) {
+        if (command.leaves_existing() && output->exists(frame)) {  // another process was faster
             progress.skip_frame(frame, output->name(frame));
             continue;
         }
         progress.begin_frame(frame);
         RenderStats stats = output->render(renderer, frame, progress.callback());
         stats.times_ms["load"] = load_ms;
-        if (!command.stats.empty()) {
+        if (!command.stats.empty() && (command.ranks.first() || !command.shards_a_frame())) {
             Json json = to_json(stats, command, frame, scene.name);
             if (stats_for_each_frame) write_text_file(frame_file(command.stats, frame), to_text(json));
             all_stats.push_back(std::move(json));
@@ -152,6 +189,7 @@ int render(RenderCommand& command) {
         const bool single = command.frames.size() == 1;
         write_text_file(command.stats, to_text(single ? all_stats.front() : all_stats));
     }
+    leave_ranks();
     return 0;
 }
 
@@ -164,14 +202,15 @@ void add_output_options(CLI::App& command, RenderCommand& render) {
     for (const AovInfo& info : aov_table()) names += (names.empty() ? "" : ", ") + std::string(info.name);
     add_value(command, group, "--aov", "LIST",
               fmt::format("More outputs in .exr files, with commas between: {}", names), [&](const std::string& text) {
-                  for (const std::string& name : split_list(text)) {
-                      if (name == "albedo" || name == "ste") refuse_as_planned("--aov " + name);
+                  for (const std::string& name : split_list(text))
                       render.settings.image.aovs.push_back(aov_named(name));
-                  }
               });
     command.add_flag("--sharp", render.sharp, "Also OUT's twin OUT.sharp.EXT: a pinhole at mid-shutter")->group(group);
     add_value(command, group, "--dataset", "DIR", "Instead of OUT: blurred and sharp frames, depth, flow, ids, cameras",
               [&](const std::string& text) { render.dataset = text; });
+    add_value(command, group, "--randomize", "FILE.json",
+              "Ranges of lens, shutter, exposure and camera, from which each frame gets its own; recorded in its files",
+              [&](const std::string& text) { render.randomization = read_randomization(text); });
     add_value(command, group, "--stats", "FILE.json",
               "What a frame cost; #### as in OUT, else an array for several frames",
               [&](const std::string& text) { render.stats = text; });
@@ -194,11 +233,18 @@ void add_batch_options(CLI::App& command, RenderCommand& render) {
     const std::string group = "Batch";
     CLI::Option* overwrite =
         command.add_flag("--overwrite", render.overwrite, "Write over files that exist (default)")->group(group);
-    command.add_flag("--skip-existing", render.skip_existing, "Leave out frames whose file exists")
+    CLI::Option* skip = command.add_flag("--skip-existing", render.skip_existing, "Leave out frames whose file exists")
+                            ->group(group)
+                            ->excludes(overwrite);
+    command
+        .add_flag("--resume", render.resume,
+                  "The same, but refuse if one of them was made with other settings, scene or version")
         ->group(group)
-        ->excludes(overwrite);
-    add_planned_flag(command, group, "--resume", "Go on with an interrupted frame");
-    add_planned_value(command, group, "--shard", "I/N", "Render part I of N of the work");
+        ->excludes(overwrite)
+        ->excludes(skip);
+    add_value(command, group, "--shard", "I/N",
+              "Part I of N of the work, I from 1: every N-th of several frames, or of the tiles of one, for `merge`",
+              [&](const std::string& text) { render.shard = parse_shard(text); });
 }
 
 }  // namespace

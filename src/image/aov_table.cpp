@@ -64,6 +64,18 @@ std::span<const AovInfo> aov_table() {
         {Aov::kCoverage, "coverage", "share of the samples that hit something", numbers({"coverage"})},
         {Aov::kVariance, "variance", "estimated variance of the mean of the pixel's samples, of linear colour",
          numbers({"variance.R", "variance.G", "variance.B"})},
+        {Aov::kAlbedo, "albedo",
+         "mean base colour of the points that are seen, linear: factor, vertex colour and texture at the very point of "
+         "each sample, without light; of a metal the colour of its reflection",
+         numbers({"Albedo.R", "Albedo.G", "Albedo.B"})},
+        {Aov::kOcclusion, "occlusion",
+         "shares of the samples that hit something whose point, at mid-shutter a frame later and earlier, is in the "
+         "picture of a pinhole but hidden behind something, or outside of that picture; the rest is seen there, too",
+         numbers({"forward.hidden", "forward.outside", "backward.hidden", "backward.outside"})},
+        {Aov::kSte, "ste",
+         "what the culling test costs: of the exact tests of the pixel's samples the share that is covered (0 where "
+         "there was none), and their number",
+         numbers({"ste", "ste.tested"})},
     };
     return kTable;
 }

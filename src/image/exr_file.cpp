@@ -283,6 +283,22 @@ Picture read_exr(const std::filesystem::path& file) {
     }
 }
 
+FileMetadata read_exr_metadata(const std::filesystem::path& file) {
+    try {
+        const Imf::InputFile input(file.c_str());
+        const auto text = [&](const char* name) {
+            const auto* attribute = input.header().findTypedAttribute<Imf::StringAttribute>(name);
+            return attribute ? attribute->value() : std::string();
+        };
+        FileMetadata metadata;
+        metadata.settings_json = text("pentaprism");
+        metadata.software = text("software");
+        return metadata;
+    } catch (const std::exception& error) {
+        throw Error(ErrorKind::kScene, fmt::format("{}: cannot read ({})", file.string(), error.what()));
+    }
+}
+
 void set_picture_threads(int threads) {
     Imf::setGlobalThreadCount(std::max(0, threads));
 }

@@ -49,6 +49,13 @@ Picture read_picture(const std::filesystem::path& file) {
     throw Error(ErrorKind::kScene, fmt::format("{}: only .exr and .png pictures can be read", file.string()));
 }
 
+FileMetadata read_metadata(const std::filesystem::path& file) {
+    const std::string suffix = lower_suffix(file);
+    if (suffix == ".exr") return read_exr_metadata(file);
+    if (suffix == ".png") return read_png_metadata(file);
+    throw Error(ErrorKind::kScene, fmt::format("{}: only .exr and .png pictures can be read", file.string()));
+}
+
 void write_text_file(const std::filesystem::path& file, std::string_view text) {
     PartFile part(file);
     part.write(text.data(), text.size());

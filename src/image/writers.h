@@ -12,6 +12,9 @@ std::unique_ptr<PictureWriter> make_png_writer(const std::filesystem::path& file
 Picture read_exr(const std::filesystem::path& file);
 Picture read_png(const std::filesystem::path& file);
 
+FileMetadata read_exr_metadata(const std::filesystem::path& file);
+FileMetadata read_png_metadata(const std::filesystem::path& file);
+
 /// Sees to it that a frame arrives as RowSink says: begun once, bands from top to bottom without a gap, none missing.
 class RowOrder {
   public:

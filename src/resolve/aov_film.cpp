@@ -4,14 +4,19 @@
 
 namespace pentaprism {
 
-AovFilm::AovFilm(std::span<const Aov> aovs, const AovSources& sources, int x0, int x1, int rows)
-    : aovs_(aovs.begin(), aovs.end()), sources_(sources), x0_(x0), width_(x1 - x0), rows_(rows) {
-    for (const Aov aov : aovs_) channels_ += static_cast<int>(aov_info(aov).channels.size());
-    pixels_.assign(static_cast<std::size_t>(width_) * rows_ * channels_, 0.0f);
+int channel_count(std::span<const Aov> aovs) {
+    int channels = 0;
+    for (const Aov aov : aovs) channels += static_cast<int>(aov_info(aov).channels.size());
+    return channels;
 }
 
-void AovFilm::add(const Tile& tile, const SampleTable& samples, const Hits& hits, const TileShade& shade, int y0,
-                  int y1, Worker& worker) {
+TileAovs::TileAovs(std::span<const Aov> aovs, const AovSources& sources, const PixelRect& delivered)
+    : aovs_(aovs.begin(), aovs.end()), sources_(sources), delivered_(delivered) {}
+
+void TileAovs::resolve(const SampleTable& samples, const Hits& hits, const TileShade& shade, Worker& worker,
+                       TileSums& sums) const {
+    const Tile& tile = sums.tile;
+    const int channels = channel_count(aovs_);
     if (worker.resolvers.empty())
         for (const Aov aov : aovs_) worker.resolvers.push_back(make_resolver(aov, sources_));
     worker.surfaces.start(*sources_.scene, tile);
@@ -22,18 +27,18 @@ void AovFilm::add(const Tile& tile, const SampleTable& samples, const Hits& hits
             const std::span<const SampleVector> vectors = samples.block(bx, by, room);
             for (int lane = 0; lane < kLanes; ++lane) {
                 const int px = bx * kBlockSize + lane % kBlockSize, py = by * kBlockSize + lane / kBlockSize;
-                if (px < std::max(tile.x0, x0_) || px >= std::min(tile.x1, x0_ + width_)) continue;
-                if (py < std::max(tile.y0, y0) || py >= std::min(tile.y1, y1)) continue;
-                resolve_pixel(samples, hits, shade, px, py, worker, vectors);
+                if (px < std::max(tile.x0, delivered_.x0) || px >= std::min(tile.x1, delivered_.x1)) continue;
+                if (py < std::max(tile.y0, delivered_.y0) || py >= std::min(tile.y1, delivered_.y1)) continue;
+                resolve_pixel(samples, hits, shade, px, py, worker, vectors, &sums.aovs[sums.own(px, py) * channels]);
             }
         }
 }
 
-void AovFilm::resolve_pixel(const SampleTable& samples, const Hits& hits, const TileShade& shade, int px, int py,
-                            Worker& worker, std::span<const SampleVector> vectors) {
+void TileAovs::resolve_pixel(const SampleTable& samples, const Hits& hits, const TileShade& shade, int px, int py,
+                             Worker& worker, std::span<const SampleVector> vectors, float* out) const {
     const int block = py % kCellSize / kBlockSize * kCellBlocks + px % kCellSize / kBlockSize;
     const int lane = py % kBlockSize * kBlockSize + px % kBlockSize;
-    for (const auto& resolver : worker.resolvers) resolver->begin();
+    for (const auto& resolver : worker.resolvers) resolver->begin(px, py);
     for (int index = 0; index < samples.spp(); ++index) {
         const int slot = worker.order.slots(lane)[index];
         const std::size_t at = (static_cast<std::size_t>(block) * samples.slots() + slot) * kLanes + lane;
@@ -47,11 +52,22 @@ void AovFilm::resolve_pixel(const SampleTable& samples, const Hits& hits, const 
         const glm::vec3 color(shade.colors[shade.point_of_sample[at]]);
         for (const auto& resolver : worker.resolvers) resolver->hit(sample, color);
     }
-    float* out = pixel(px, py);
     for (std::size_t i = 0; i < aovs_.size(); ++i) {
         worker.resolvers[i]->end(out);
         out += aov_info(aovs_[i]).channels.size();
     }
+}
+
+AovFilm::AovFilm(int channels, int x0, int x1, int rows) : channels_(channels), x0_(x0), width_(x1 - x0), rows_(rows) {
+    pixels_.assign(static_cast<std::size_t>(width_) * rows_ * channels_, 0.0f);
+}
+
+void AovFilm::add(const TileSums& from, int y0, int y1) {
+    const Tile& tile = from.tile;
+    const int first = std::max(tile.x0, x0_), last = std::min(tile.x1, x0_ + width_);
+    if (channels_ == 0 || first >= last) return;
+    for (int y = std::max(tile.y0, y0); y < std::min(tile.y1, y1); ++y)
+        std::copy_n(&from.aovs[from.own(first, y) * channels_], (last - first) * channels_, pixel(first, y));
 }
 
 std::span<const float> AovFilm::rows(int first, int count) {

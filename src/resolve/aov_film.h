@@ -7,10 +7,14 @@
 #include <span>
 #include <vector>
 
+#include "bound/screen_bounds.h"
+#include "cover/cover.h"
 #include "cover/hits.h"
 #include "resolve/flow.h"
+#include "resolve/flow_occlusion.h"
 #include "resolve/named_ids.h"
 #include "resolve/surface_samples.h"
+#include "resolve/tile_sums.h"
 #include "shade/sample_order.h"
 #include "shade/tile_shade.h"
 
@@ -19,8 +23,10 @@ namespace pentaprism {
 /// What resolving looks up; outlives the film.
 struct AovSources {
     const ShadingScene* scene = nullptr;
-    const FrameIds* ids = nullptr;  ///< for ids and Cryptomatte, else may be null
-    const Flow* flow = nullptr;     ///< for motion, else may be null
+    const FrameIds* ids = nullptr;             ///< for ids and Cryptomatte, else may be null
+    const Flow* flow = nullptr;                ///< for motion, else may be null
+    const FlowOcclusion* occlusion = nullptr;  ///< for occlusion, else may be null
+    const CoverMap* tests = nullptr;           ///< of the whole picture, for ste, else may be null
     glm::vec3 background{0.0f};
     float brightness = 1.0f;  ///< of colours in the picture: 2^exposure
 };
@@ -29,7 +35,7 @@ struct AovSources {
 class AovResolver {
   public:
     virtual ~AovResolver() = default;
-    virtual void begin() = 0;
+    virtual void begin(int px, int py) = 0;
     virtual void hit(const SurfaceSample& sample, const glm::vec3& color) = 0;
     virtual void miss(const glm::vec3& background) = 0;
     /// `out` has a place for each channel of the AovInfo.
@@ -37,11 +43,14 @@ class AovResolver {
 };
 std::unique_ptr<AovResolver> make_resolver(Aov aov, const AovSources& sources);
 
-/// Holds a window of rows that slides down the picture, as Film does.
-class AovFilm {
+/// Channels of all of them together.
+int channel_count(std::span<const Aov> aovs);
+
+/// Resolves the tiles of a frame.
+class TileAovs {
   public:
-    /// Pixels [x0, x1) are delivered; `rows`: height of the window.
-    AovFilm(std::span<const Aov> aovs, const AovSources& sources, int x0, int x1, int rows);
+    /// `delivered`: pixels outside it are left 0.
+    TileAovs(std::span<const Aov> aovs, const AovSources& sources, const PixelRect& delivered);
 
     /// What a thread needs, kept between tiles.
     struct Worker {
@@ -50,24 +59,37 @@ class AovFilm {
         std::vector<std::unique_ptr<AovResolver>> resolvers;
     };
 
-    /// Resolves the tile's pixels between the columns x0 and x1 and the rows y0 and y1. Thread-safe for different
-    /// tiles.
-    void add(const Tile& tile, const SampleTable& samples, const Hits& hits, const TileShade& shade, int y0, int y1,
-             Worker& worker);
+    /// Fills `sums.aovs` of the tile that `sums` were started for. Thread-safe for different sums and workers.
+    void resolve(const SampleTable& samples, const Hits& hits, const TileShade& shade, Worker& worker,
+                 TileSums& sums) const;
+
+  private:
+    void resolve_pixel(const SampleTable& samples, const Hits& hits, const TileShade& shade, int px, int py,
+                       Worker& worker, std::span<const SampleVector> vectors, float* out) const;
+
+    std::vector<Aov> aovs_;
+    AovSources sources_;
+    PixelRect delivered_;
+};
+
+/// Holds a window of rows that slides down the picture, as Film does.
+class AovFilm {
+  public:
+    /// Pixels [x0, x1) are delivered; `rows`: height of the window.
+    AovFilm(int channels, int x0, int x1, int rows);
+
+    /// The tile's pixels between the columns x0 and x1 and the rows y0 and y1. Thread-safe for different tiles.
+    void add(const TileSums& tile, int y0, int y1);
 
     /// The channels one after the other, each width * count pixels. The span stays valid until the next call.
     std::span<const float> rows(int first, int count);
 
   private:
-    void resolve_pixel(const SampleTable& samples, const Hits& hits, const TileShade& shade, int px, int py,
-                       Worker& worker, std::span<const SampleVector> vectors);
     float* pixel(int x, int y) {
         return &pixels_[(static_cast<std::size_t>(y % rows_) * width_ + (x - x0_)) * channels_];
     }
 
-    std::vector<Aov> aovs_;
-    AovSources sources_;
-    int x0_, width_, rows_, channels_ = 0;
+    int channels_, x0_, width_, rows_;
     std::vector<float> pixels_;  // row y at (y mod rows_); the channels of a pixel together
     std::vector<float> delivered_;
 };

@@ -15,7 +15,7 @@ namespace {
 template <int kChannels>
 class MeanResolver : public AovResolver {
   public:
-    void begin() override {
+    void begin(int, int) override {
         std::fill(sums_, sums_ + kChannels, 0.0);
         count_ = 0;
     }
@@ -82,7 +82,7 @@ class UvResolver : public MeanResolver<2> {
 class MotionResolver : public AovResolver {
   public:
     explicit MotionResolver(const AovSources& sources) : flow_(*sources.flow) {}
-    void begin() override { forward_ = backward_ = {}; }
+    void begin(int, int) override { forward_ = backward_ = {}; }
     void miss(const glm::vec3&) override {}
     void hit(const SurfaceSample& s, const glm::vec3&) override {
         forward_.add(flow_.forward(s));
@@ -156,7 +156,7 @@ class VotingResolver : public AovResolver {
   public:
     VotingResolver(const AovSources& sources, bool materials)
         : numbers_(numbers_of_parts(*sources.ids, materials)), parts_(sources.scene->frame().parts.data()) {}
-    void begin() override { votes_.clear(); }
+    void begin(int, int) override { votes_.clear(); }
     void miss(const glm::vec3&) override { votes_.add(0, 0.0f); }
     void hit(const SurfaceSample& s, const glm::vec3&) override { votes_.add(numbers_[s.part - parts_], s.t); }
 
@@ -189,7 +189,7 @@ class CryptomatteResolver : public AovResolver {
   public:
     explicit CryptomatteResolver(const AovSources& sources)
         : ids_(*sources.ids), objects_(sources, false), materials_(sources, true) {}
-    void begin() override { objects_.begin(), materials_.begin(); }
+    void begin(int, int) override { objects_.begin(0, 0), materials_.begin(0, 0); }
     void miss(const glm::vec3& c) override { objects_.miss(c), materials_.miss(c); }
     void hit(const SurfaceSample& s, const glm::vec3& c) override { objects_.hit(s, c), materials_.hit(s, c); }
     void end(float* out) override {
@@ -219,7 +219,7 @@ class CryptomatteResolver : public AovResolver {
 
 class CoverageResolver : public AovResolver {
   public:
-    void begin() override { hits_ = samples_ = 0; }
+    void begin(int, int) override { hits_ = samples_ = 0; }
     void hit(const SurfaceSample&, const glm::vec3&) override { ++hits_, ++samples_; }
     void miss(const glm::vec3&) override { ++samples_; }
     void end(float* out) override { *out = static_cast<float>(hits_) / static_cast<float>(samples_); }
@@ -232,7 +232,7 @@ class CoverageResolver : public AovResolver {
 class VarianceResolver : public AovResolver {
   public:
     explicit VarianceResolver(const AovSources& sources) : brightness_(sources.brightness) {}
-    void begin() override {
+    void begin(int, int) override {
         mean_ = squares_ = glm::dvec3(0.0);
         count_ = 0;
     }
@@ -253,6 +253,53 @@ class VarianceResolver : public AovResolver {
     double brightness_;
     glm::dvec3 mean_{0.0}, squares_{0.0};
     int count_ = 0;
+};
+
+// The texture at the point itself: the samples average over pixel, motion and lens themselves.
+class AlbedoResolver : public MeanResolver<3> {
+    void hit(const SurfaceSample& s, const glm::vec3&) override {
+        const BoundMaterial& bound = *s.shaded->material;
+        const Primitive& primitive = *s.shaded->primitive;
+        glm::vec3 base(bound.material.base_color);
+        if (bound.base_color.pyramid) {
+            const std::vector<glm::vec2>& uvs = primitive.texcoords[bound.base_color.set];
+            base *= glm::vec3(bound.base_color.sample(uvs.empty() ? glm::vec2(0.0f) : interpolate(uvs, s), {}));
+        }
+        if (!primitive.colors.empty()) base *= glm::vec3(interpolate(primitive.colors, s));
+        add({base.x, base.y, base.z});
+    }
+};
+
+class OcclusionResolver : public MeanResolver<4> {
+  public:
+    explicit OcclusionResolver(const AovSources& sources) : occlusion_(*sources.occlusion) {}
+    void hit(const SurfaceSample& s, const glm::vec3&) override {
+        using Fate = FlowOcclusion::Fate;
+        const auto is = [](Fate fate, Fate wanted) { return fate == wanted ? 1.0 : 0.0; };
+        const Fate later = occlusion_.forward(s), earlier = occlusion_.backward(s);
+        add({is(later, Fate::kHidden), is(later, Fate::kOutside), is(earlier, Fate::kHidden),
+             is(earlier, Fate::kOutside)});
+    }
+
+  private:
+    const FlowOcclusion& occlusion_;
+};
+
+class SteResolver : public AovResolver {
+  public:
+    explicit SteResolver(const AovSources& sources) : tests_(*sources.tests) {}
+    void begin(int px, int py) override { pixel_ = static_cast<std::size_t>(py) * tests_.width + px; }
+    void hit(const SurfaceSample&, const glm::vec3&) override {}
+    void miss(const glm::vec3&) override {}
+    void end(float* out) override {
+        const auto tested = static_cast<float>(tests_.tested[pixel_]);
+        out[0] = tested > 0.0f ? static_cast<float>(tests_.covered[pixel_]) / tested : 0.0f;
+        out[1] = tested;
+    }
+
+  private:
+    const CoverMap& tests_;
+    std::size_t pixel_ = 0;
 };
 
 }  // namespace
@@ -281,6 +328,12 @@ std::unique_ptr<AovResolver> make_resolver(Aov aov, const AovSources& sources) {
             return std::make_unique<CryptomatteResolver>(sources);
         case Aov::kCoverage:
             return std::make_unique<CoverageResolver>();
+        case Aov::kAlbedo:
+            return std::make_unique<AlbedoResolver>();
+        case Aov::kOcclusion:
+            return std::make_unique<OcclusionResolver>(sources);
+        case Aov::kSte:
+            return std::make_unique<SteResolver>(sources);
         case Aov::kVariance:
             break;
     }

@@ -11,6 +11,21 @@
 
 namespace pentaprism {
 
+/// The scene at mid-shutter of a frame through a pinhole: all at one instant.
+Frame pose_instant(const Scene& scene, RenderSettings settings, double number);
+
+/// Settings of the neighbouring frames, as far as flow needs them.
+RenderSettings frame_before(RenderSettings settings);
+RenderSettings frame_after(RenderSettings settings);
+
+/// Where a frame of pose_instant() shows the point that a sample of another frame of the scene sees.
+struct Placed {
+    double x = 0, y = 0;  ///< pixels from the middle of the picture, y up; no number unless w > 0
+    double w = 0;         ///< in front of the camera if View::w_near() or more
+    double depth = 0;     ///< metres along the optical axis
+};
+Placed place_of(const Frame& frame, const SurfaceSample& sample);
+
 class Flow {
   public:
     /// `settings` and `number` are those of the frame that is rendered. The scene must outlive this.

@@ -1,37 +1,16 @@
 #include <filesystem>
-#include <fmt/format.h>
 #include <fstream>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <pentaprism/metadata.h>
 #include <sstream>
 #include <vector>
-#include <xxhash.h>
+
+#include "base/hash.h"
 
 namespace pentaprism {
 namespace {
 
 namespace fs = std::filesystem;
-
-class Hash {
-  public:
-    Hash() : state_(XXH3_createState(), XXH3_freeState) { XXH3_128bits_reset(state_.get()); }
-    void add(const void* bytes, std::size_t count) { XXH3_128bits_update(state_.get(), bytes, count); }
-    void add_file(const fs::path& file) {
-        std::ifstream stream(file, std::ios::binary);
-        std::vector<char> buffer(1 << 20);
-        while (stream.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), stream.gcount() > 0) {
-            add(buffer.data(), static_cast<std::size_t>(stream.gcount()));
-        }
-    }
-    std::string hex() const {
-        const XXH128_hash_t value = XXH3_128bits_digest(state_.get());
-        return fmt::format("{:016x}{:016x}", value.high64, value.low64);
-    }
-
-  private:
-    std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> state_;
-};
 
 std::string percent_decoded(const std::string& uri) {
     std::string text;

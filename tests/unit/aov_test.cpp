@@ -136,10 +136,126 @@ TEST(Aovs, VarianceIsThatOfTheMeanOfTheSamples) {
         }
 }
 
+TEST(Aovs, AlbedoIsTheBaseColourWithoutLight) {
+    Scene scene = scene_of_two();
+    scene.materials[0].base_color = {0.5f, 0.25f, 1.0f, 1.0f};
+    scene.materials[0].metallic = 1.0f;
+    scene.materials[1].base_color = {0.125f, 0.5f, 0.75f, 1.0f};
+    const Picture picture = picture_of(scene, settings_with({Aov::kAlbedo, Aov::kObjectId}));
+    EXPECT_FLOAT_EQ(value(picture, 0, kMiddle, kMiddle), 0.5f);
+    EXPECT_FLOAT_EQ(value(picture, 1, kMiddle, kMiddle), 0.25f);
+    EXPECT_FLOAT_EQ(value(picture, 2, kCorner, kCorner), 0.75f);
+}
+
+// Shading is the other way to the same number: without light it shows the base colour of each sample.
+TEST(Aovs, AlbedoIsThePictureOfAnUnlitTexturedScene) {
+    Scene scene = scene_of_two();
+    Image image;
+    image.width = image.height = 4;
+    for (int i = 0; i < 16; ++i)
+        for (const int code : {16 * i, 255 - 16 * i, i % 2 * 255, 255})
+            image.texels.push_back(static_cast<std::uint8_t>(code));
+    scene.images.push_back(image);
+    for (Material& material : scene.materials) {
+        material.unlit = true;
+        material.base_color = {0.5f, 1.0f, 0.75f, 1.0f};
+        material.base_color_texture.image = 0;
+    }
+    RenderSettings settings = settings_with({Aov::kAlbedo, Aov::kCoverage});
+    settings.image.filter = Filter::kBox;
+    settings.camera.lens_radius = 0.1;
+    settings.camera.focus_distance = 4.0;
+    settings.method.shading = "sample";
+    settings.method.texture_filter = TextureFilter::kOff;
+    const Picture picture = picture_of(scene, settings);
+    float least = 1.0f, most = 0.0f;
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x)
+            for (int c = 0; c < 3; ++c) {
+                const float shown = picture.rgba[4 * (static_cast<std::size_t>(y) * kSize + x) + c];
+                EXPECT_NEAR(value(picture, c, x, y) * value(picture, 3, x, y), shown, 2e-6) << x << ' ' << y;
+                least = std::min(least, shown), most = std::max(most, shown);
+            }
+    EXPECT_LT(least + 0.3f, most) << "there is a texture to see";
+}
+
+// The wall stands still, so what is hidden of it is what lies behind the mover's square a frame later or earlier.
+TEST(Aovs, OcclusionIsWhereTheMoverWillBeAndWas) {
+    RenderSettings settings = settings_with({Aov::kOcclusion, Aov::kObjectId});
+    settings.animation.fps = 2.0;
+    const Picture picture = picture_of(scene_of_two(), settings, 10.0);
+    const double half = 0.5 * kFocal / 2, step_x = kFocal * 0.5 / 2, step_y = -kFocal * 0.25 / 2;
+    int hidden = 0;
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+            if (number(picture, 4, x, y) != 2) {
+                EXPECT_EQ(value(picture, 0, kMiddle, kMiddle), 0.0f) << "nothing stands before the mover";
+                continue;
+            }
+            for (const int way : {1, -1}) {
+                // How far inside the square, in pixels; the pixel may see a little of the mover, and the rule leaves a
+                // rim.
+                const double dx = half - std::abs(x + 0.5 - kSize / 2.0 - way * step_x);
+                const double dy = half - std::abs(y + 0.5 - kSize / 2.0 - way * step_y);
+                const double inside = std::min(dx, dy);
+                const float share = value(picture, way > 0 ? 0 : 2, x, y);
+                if (inside > 1.5) {
+                    EXPECT_GT(share, 0.5f) << x << ' ' << y << ' ' << way;
+                }
+                if (inside < -0.8) {
+                    EXPECT_EQ(share, 0.0f) << x << ' ' << y << ' ' << way;
+                }
+                hidden += share > 0.5f;
+            }
+            EXPECT_EQ(value(picture, 1, x, y), 0.0f) << "the wall stays in the picture";
+        }
+    EXPECT_GT(hidden, 20);
+}
+
+TEST(Aovs, OcclusionKnowsThePicturesBorder) {
+    // Three frames after the middle the mover touches the right border; the next step takes half of it out.
+    RenderSettings settings = settings_with({Aov::kOcclusion, Aov::kObjectId});
+    settings.animation.fps = 2.0;
+    const Picture picture = picture_of(scene_of_two(), settings, 13.0);
+    const double step = kFocal * 0.5 / 2, blur = 0.5 * 0.25 * step;
+    int leaving = 0;
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+            if (number(picture, 4, x, y) != 1) continue;
+            if (x + step - blur > kSize) {
+                EXPECT_GT(value(picture, 1, x, y), 0.5f) << x << " (the wall may show)";
+                ++leaving;
+            }
+            if (x + 1 + step + blur < kSize) {
+                EXPECT_EQ(value(picture, 1, x, y), 0.0f) << x;
+            }
+            EXPECT_EQ(value(picture, 3, x, y), 0.0f) << "it comes from inside";
+        }
+    EXPECT_GT(leaving, 0);
+}
+
+TEST(Aovs, SteCountsTheTestsOfTheFrame) {
+    RenderSettings settings = settings_with({Aov::kSte});
+    EXPECT_THROW(picture_of(scene_of_two(), settings), Error);
+    settings.method.culling = "hull";
+    RenderStats stats;
+    const Picture picture = render_picture(scene_of_two(), settings, 40.0, stats);
+    double tested = 0, covered = 0;
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+            tested += value(picture, 1, x, y);
+            covered += value(picture, 0, x, y) * value(picture, 1, x, y);
+        }
+    EXPECT_EQ(tested, stats.tested);
+    EXPECT_NEAR(covered, stats.covered, 1e-3 * stats.covered);
+    EXPECT_GE(value(picture, 0, kCorner, kCorner), 0.5f) << "the wall alone, at most with its other triangle";
+}
+
 TEST(Aovs, DoNotDependOnTilesThreadsOrOneAnother) {
     std::vector<Aov> all;
     for (const AovInfo& info : aov_table()) all.push_back(info.aov);
     RenderSettings settings = settings_with(all);
+    settings.method.culling = "hull";  // ste wants a test
     settings.image.height = 80;
     settings.camera.lens_radius = 0.1;
     settings.camera.focus_distance = 4.0;

@@ -71,15 +71,18 @@ struct Result {
 };
 
 struct Drawing {
+    Filter filter = Filter::kBox;
+    glm::vec3 background{0.0f};
     FilmSettings film;
     int tile_size = 32;
     std::uint32_t shuffle = 0;
     Tile rendered{0, 0, kWidth, kHeight};
 };
 
-Drawing whole(Filter filter, int spp) {
+Drawing whole(Filter filter) {
     Drawing drawing;
-    drawing.film = {0, 0, kWidth, kHeight, 32, spp, filter, glm::vec3(0.0f), 0.0};
+    drawing.filter = filter;
+    drawing.film = {0, 0, kWidth, kHeight, 32, filter_reach(filter), 0.0};
     return drawing;
 }
 
@@ -89,7 +92,9 @@ void append(Result& result, const PixelRows& rows) {
 }
 
 Result draw(const Drawing& drawing, const SampleTable& table, const Picked& picked) {
+    const TileFilter filter(drawing.filter, drawing.background);
     Film film(drawing.film);
+    TileSums sums;
     Result result;
     const Tile& all = drawing.rendered;
     for (int y = all.y0 / 32 * 32; y < all.y1; y += 32) {
@@ -98,7 +103,9 @@ Result draw(const Drawing& drawing, const SampleTable& table, const Picked& pick
         std::shuffle(tiles.begin(), tiles.end(), std::mt19937(drawing.shuffle));
         for (const Tile& tile : tiles) {
             const ShadedTile made = shaded(table, tile, picked);
-            film.add(made.tile, table, made.hits, made.shade);
+            sums.start(made.tile, filter.reach(), 0);
+            filter.add(table, made.hits, made.shade, sums);
+            film.add(sums);
         }
         append(result, film.take_rows(end, end == all.y1));
     }
@@ -117,7 +124,7 @@ TEST(Film, AConstantPictureStaysConstant) {
         const SampleTable table = table_of(spp);
         for (const Filter filter : kFilters) {
             const Result result =
-                draw(whole(filter, spp), table, [](int, int, int) { return glm::vec3(0.3f, 1.0f, 7.25f); });
+                draw(whole(filter), table, [](int, int, int) { return glm::vec3(0.3f, 1.0f, 7.25f); });
             ASSERT_EQ(result.z.size(), static_cast<std::size_t>(kWidth) * kHeight);
             for (std::size_t i = 0; i < result.z.size(); ++i) {
                 EXPECT_NEAR(result.rgba[4 * i], 0.3f, 0.3e-6f);
@@ -132,10 +139,10 @@ TEST(Film, AConstantPictureStaysConstant) {
 TEST(Film, TileSizeAndOrderDoNotChangeABit) {
     const SampleTable table = table_of(4);
     for (const Filter filter : kFilters) {
-        const Result reference = draw(whole(filter, 4), table, noise);
+        const Result reference = draw(whole(filter), table, noise);
         for (const int size : {8, 16, 32})
             for (const std::uint32_t shuffle : {1u, 2u}) {
-                Drawing drawing = whole(filter, 4);
+                Drawing drawing = whole(filter);
                 drawing.tile_size = size;
                 drawing.shuffle = shuffle;
                 EXPECT_TRUE(draw(drawing, table, noise) == reference) << "tiles of " << size;
@@ -146,8 +153,8 @@ TEST(Film, TileSizeAndOrderDoNotChangeABit) {
 TEST(Film, ACropEqualsThatPartOfTheWhole) {
     const SampleTable table = table_of(4);
     for (const Filter filter : kFilters) {
-        const Result all = draw(whole(filter, 4), table, noise);
-        Drawing drawing = whole(filter, 4);
+        const Result all = draw(whole(filter), table, noise);
+        Drawing drawing = whole(filter);
         drawing.film.x0 = 33, drawing.film.x1 = 64, drawing.film.y0 = 9, drawing.film.y1 = 40;
         drawing.rendered = {32, 8, 65, 41};
         // The tiles here are whole ones around the crop and its rim; rows above and beside it are dropped.
@@ -167,7 +174,7 @@ TEST(Film, EachPixelIsTheWeightedMeanOfTheSamplesWithinTheRadius) {
     const int spp = 4;
     const SampleTable table = table_of(spp);
     for (const Filter filter : kFilters) {
-        const Result result = draw(whole(filter, spp), table, noise);
+        const Result result = draw(whole(filter), table, noise);
         for (const auto& [px, py] : std::vector<std::pair<int, int>>{{0, 0}, {31, 31}, {32, 32}, {69, 44}, {40, 3}}) {
             double sum = 0.0, alpha = 0.0, weights = 0.0;
             for (int qy = std::max(0, py - 3); qy <= std::min(kHeight - 1, py + 3); ++qy)
@@ -190,8 +197,8 @@ TEST(Film, EachPixelIsTheWeightedMeanOfTheSamplesWithinTheRadius) {
 
 TEST(Film, WhatIsNotHitShowsTheBackgroundWithoutAlphaAtInfiniteDepth) {
     const SampleTable table = table_of(1);
-    Drawing drawing = whole(Filter::kBlackmanHarris, 1);
-    drawing.film.background = {0.25f, 0.5f, 1.0f};
+    Drawing drawing = whole(Filter::kBlackmanHarris);
+    drawing.background = {0.25f, 0.5f, 1.0f};
     drawing.film.exposure = 1.0;
     const Result result = draw(drawing, table, [](int, int, int) { return std::nullopt; });
     EXPECT_NEAR(result.rgba[0], 0.5f, 1e-6f);
@@ -203,7 +210,7 @@ TEST(Film, WhatIsNotHitShowsTheBackgroundWithoutAlphaAtInfiniteDepth) {
 TEST(Film, ASampleThatIsNotANumberCountsAsBlackAndSpoilsNothing) {
     const SampleTable table = table_of(1);
     const auto with = [&](float bad) {
-        return draw(whole(Filter::kGaussian, 1), table,
+        return draw(whole(Filter::kGaussian), table,
                     [bad](int x, int y, int) { return x == 20 && y == 20 ? glm::vec3(bad) : glm::vec3(1.0f); });
     };
     const Result black = with(0.0f);
@@ -215,7 +222,7 @@ TEST(Film, ASampleThatIsNotANumberCountsAsBlackAndSpoilsNothing) {
 TEST(Film, TheDepthIsThatOfTheNearestSampleOfThePixelItself) {
     const SampleTable table = table_of(4);
     const Result result =
-        draw(whole(Filter::kBlackmanHarris, 4), table, [](int x, int, int index) -> std::optional<glm::vec3> {
+        draw(whole(Filter::kBlackmanHarris), table, [](int x, int, int index) -> std::optional<glm::vec3> {
             if (x == 10 || index < 2) return std::nullopt;
             return glm::vec3(1.0f);
         });

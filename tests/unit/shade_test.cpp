@@ -39,7 +39,9 @@ std::vector<float> draw(const Scene& scene, const RenderSettings& settings, int 
     const Frame frame = frame_of(scene, settings);
     const SampleTable table(settings.image.spp, 0, frame.view.lens, Grouping::kBoth);
     const ShadingScene shading(frame, options);
-    Film film({0, 0, kSize, kSize, kSize, settings.image.spp, settings.image.filter, glm::vec3(0.0f), 0.0});
+    const TileFilter filter(settings.image.filter, glm::vec3(0.0f));
+    Film film({0, 0, kSize, kSize, kSize, filter.reach(), 0.0});
+    TileSums sums;
     TileShader shader;
     Hits hits;
     TileShade shade;
@@ -48,7 +50,9 @@ std::vector<float> draw(const Scene& scene, const RenderSettings& settings, int 
             const Tile tile{x, y, x + tile_size, y + tile_size};
             find_hits(frame, table, tile, hits);
             shader.shade(shading, table, tile, hits, shade);
-            film.add(tile, table, hits, shade);
+            sums.start(tile, filter.reach(), 0);
+            filter.add(table, hits, shade, sums);
+            film.add(sums);
         }
     const PixelRows rows = film.take_rows(kSize, true);
     return {rows.rgba.begin(), rows.rgba.end()};

@@ -1,0 +1,73 @@
+#pragma once
+// A frame made ready, and its tiles from their bins to sums of samples: the only code that knows the order of the
+// stages.
+//
+//   scene -> view, frame -> bins -> [ tile: cover -> shade -> sums ]
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <pentaprism/render.h>
+
+#include "render/visibility.h"
+#include "resolve/aov_film.h"
+#include "resolve/flow.h"
+#include "resolve/named_ids.h"
+#include "resolve/tile_sums.h"
+#include "shade/shade_tile.h"
+
+namespace pentaprism {
+
+/// What a renderer keeps between frames.
+struct KeptParts {
+    std::shared_ptr<const Textures> textures;
+    std::shared_ptr<const Environment> environment;
+};
+
+class FrameTiles {
+  public:
+    /// Poses, bins and prepares frame `number`. The scene must outlive this.
+    FrameTiles(const Scene& scene, const KeptParts& kept, const RenderSettings& settings, double number);
+
+    const FrameInfo& info() const { return info_; }
+    int reach() const { return filter_.reach(); }
+    const std::vector<Tile>& tiles() const { return visibility_->tiles(); }
+
+    /// What a thread needs to take a tile from its bin to sums, kept between tiles.
+    struct Worker {
+        Hits hits;
+        TileShader shader;
+        TileShade shade;
+        TileAovs::Worker aovs;
+        TileSums sums;
+    };
+    /// Leaves the tile in worker.sums. Thread-safe for different workers.
+    void render(const Tile& tile, Worker& worker);
+
+    /// All but the total time. `samples` are those of the delivered pixels in the tiles that were rendered.
+    void fill(RenderStats& stats) const;
+
+  private:
+    struct Costs {
+        std::atomic<std::int64_t> cover_ns{0}, shade_ns{0}, resolve_ns{0}, tested{0}, covered{0}, shaded{0}, pixels{0};
+    };
+    FrameInfo describe(std::span<const Index> animations, double number) const;
+    void make_aovs(double number);
+
+    RenderSettings settings_;
+    TileFilter filter_;
+    Frame frame_;
+    std::optional<SampleTable> samples_;
+    std::optional<Visibility> visibility_;
+    std::optional<ShadingScene> shading_;
+    FrameInfo info_;
+    std::optional<FrameIds> ids_;  // made only for output variables that need them
+    std::optional<Flow> flow_;
+    std::optional<FlowOcclusion> occlusion_;
+    std::optional<CoverMap> tests_;
+    std::optional<TileAovs> aovs_;
+    Costs costs_;
+    double pose_ms_ = 0, samples_ms_ = 0, bin_ms_ = 0, prepare_ms_ = 0;
+};
+
+}  // namespace pentaprism

@@ -1,0 +1,59 @@
+#include "render/picture_rows.h"
+
+#include <algorithm>
+
+namespace pentaprism {
+namespace {
+
+// Tallest band of rows whose film stays small whatever the width; a usual picture is a single band.
+int band_rows(const PixelRect& rect) {
+    constexpr int kFilmPixels = 1 << 23;
+    const int rows = std::max(1, kFilmPixels / std::max(1, rect.x1 - rect.x0) / kCellSize) * kCellSize;
+    return std::min(rows, (rect.y1 - rect.y0 + 2 * kCellSize - 1) / kCellSize * kCellSize + kCellSize);
+}
+
+}  // namespace
+
+PixelRect delivered_part(const FrameInfo& info) {
+    return {info.x0, info.x1, info.y0, info.y1};
+}
+
+PixelRect rendered_part(const FrameInfo& info, int reach) {
+    return {std::max(0, info.x0 - reach), std::min(info.width, info.x1 + reach), std::max(0, info.y0 - reach),
+            std::min(info.height, info.y1 + reach)};
+}
+
+PictureRows::PictureRows(const FrameInfo& info, int reach, double exposure, RowSink& sink)
+    : part_(delivered_part(info)),
+      band_rows_(band_rows(part_)),
+      film_({part_.x0, part_.y0, part_.x1, part_.y1, band_rows_, reach, exposure}),
+      aovs_(channel_count(info.aovs), part_.x0, part_.x1, band_rows_ + 2 * reach + 1),
+      sink_(sink) {
+    sink_.begin(info);
+}
+
+void PictureRows::assemble(std::span<const Tile> tiles,
+                           const std::function<void(std::size_t, std::size_t)>& add_tiles) {
+    for (std::size_t first = 0; first < tiles.size();) {
+        const int band_end = tiles[first].y0 + band_rows_;
+        std::size_t last = first;
+        while (last < tiles.size() && tiles[last].y1 <= band_end) ++last;
+        add_tiles(first, last);
+        deliver(tiles[last - 1].y1, last == tiles.size());
+        first = last;
+    }
+}
+
+void PictureRows::add(const TileSums& tile) {
+    film_.add(tile);
+    aovs_.add(tile, part_.y0, part_.y1);
+}
+
+void PictureRows::deliver(int rendered_to, bool last) {
+    PixelRows rows = film_.take_rows(rendered_to, last);
+    if (rows.count == 0) return;
+    rows.aovs = aovs_.rows(rows.y0, rows.count);
+    sink_.rows(rows);
+}
+
+}  // namespace pentaprism
