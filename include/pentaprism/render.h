@@ -32,10 +32,12 @@ struct FrameInfo {
     double fx = 0.0, fy = 0.0;                 ///< pixels: focal length (perspective) or pixels a metre (orthographic)
     std::string camera;
     int max_motion_segments = 1;
-    /// The camera at the shutter knots k / max_motion_segments: seconds, and world to camera as world_to_camera.
+    /// The camera at the shutter knots k / max_motion_segments: seconds, and the rest as above. Zoom and focus pulls
+    /// are in it.
     struct Knot {
         double time = 0.0;
         std::array<double, 16> world_to_camera{};
+        double fx = 0.0, fy = 0.0, lens_radius = 0.0, focus_distance = 0.0;
     };
     std::vector<Knot> knots;
     std::vector<Aov> aovs;                                        ///< what PixelRows::aovs holds, in this order

@@ -113,7 +113,11 @@ FrameInfo FrameTiles::describe(std::span<const Index> animations, double number)
     for (int k = 0; k <= info.max_motion_segments; ++k) {
         FrameInfo::Knot knot;
         knot.time = view.shutter.at(static_cast<double>(k) / info.max_motion_segments);
-        store(world_to_camera(view, evaluate(*frame_.scene, animations, knot.time)), knot.world_to_camera);
+        const Pose pose = evaluate(*frame_.scene, animations, knot.time);
+        store(world_to_camera(view, pose), knot.world_to_camera);
+        const View now = view_at(*frame_.scene, view, pose);
+        knot.fx = now.fx, knot.fy = now.fy;
+        knot.lens_radius = now.lens.radius, knot.focus_distance = now.lens.focus_distance;
         info.knots.push_back(knot);
         if (view.shutter.close == view.shutter.open) break;  // one instant
     }
