@@ -11,7 +11,6 @@ done <<'END'
 --max-foreground-blur 5
 --backend gl
 --sampler sobol
---samples dump
 END
 for command in view; do
     refuses 2 "$command is not built yet \(planned: see CHANGELOG\)" "$command" some thing --option
