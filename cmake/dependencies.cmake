@@ -33,3 +33,13 @@ if(PENTAPRISM_MPI)
     set(PENTAPRISM_HAVE_MPI ON)
   endif()
 endif()
+
+set(PENTAPRISM_HAVE_GL OFF)
+if(PENTAPRISM_GL)
+  # libEGL itself is opened when it is asked for, so that the program starts without it.
+  pkg_check_modules(epoxy QUIET IMPORTED_TARGET epoxy)
+  pkg_check_modules(egl QUIET egl)
+  if(TARGET PkgConfig::epoxy AND egl_FOUND)
+    set(PENTAPRISM_HAVE_GL ON)
+  endif()
+endif()

@@ -140,6 +140,8 @@ struct LensInfo {
     std::optional<double> fstop, focus_distance, focal_length_mm, sensor_width_mm, shutter, aperture_rotation_deg,
         aperture_ratio;
     std::optional<int> aperture_blades;
+    std::optional<std::array<double, 2>> focus_range;  ///< as CameraSettings::focus_range
+    std::optional<double> max_foreground_blur, tilt_deg, swing_deg, cats_eye;
 };
 
 struct Camera {
@@ -165,13 +167,14 @@ struct Light {
     float inner_cone = 0.0f, outer_cone = 0.7853982f;
 };
 
-enum class ChannelPath : std::uint8_t { kTranslation, kRotation, kScale, kWeights };
+/// The first four move a node, the others a camera (KHR_animation_pointer).
+enum class ChannelPath : std::uint8_t { kTranslation, kRotation, kScale, kWeights, kYfov, kFocusDistance, kFstop };
 enum class Interpolation : std::uint8_t { kStep, kLinear, kCubicSpline };
 
-/// Keys of one property of one node. `values` holds `width` numbers for each key (3, 4: x y z w, 3, or the number of
-/// weights), three times that for cubic splines (in-tangent, value, out-tangent). Times ascend.
+/// Keys of one property of one node or camera. `values` holds `width` numbers for each key (3, 4: x y z w, 3, the
+/// number of weights, or 1), three times that for cubic splines (in-tangent, value, out-tangent). Times ascend.
 struct Channel {
-    Index node = kNone;
+    Index node = kNone, camera = kNone;  ///< one of them
     ChannelPath path = ChannelPath::kTranslation;
     Interpolation interpolation = Interpolation::kLinear;
     int width = 3;

@@ -80,8 +80,17 @@ struct CameraSettings {
     std::optional<double> aperture_rotation_deg;       ///< 0
     std::optional<double> aperture_roundness;          ///< 0: straight blades, to 1: a disk
     std::optional<double> aperture_ratio;              ///< 1; height of the circle of confusion over its width
-    CameraOffset offset;                               ///< the same for the whole frame
-    CameraOffset offset_before, offset_after;          ///< of the neighbouring frames: what flow leads to
+    /// Depths in metres, nearest and farthest, between which all is sharp; blur begins beyond them, smoothly, over a
+    /// quarter of their difference. Holds the focus distance, which if unset is where both ends would blur alike.
+    std::optional<std::array<double, 2>> focus_range;
+    std::optional<double> max_foreground_blur;  ///< pixels: largest radius of blur in front of the focus
+    /// The plane of focus leans: degrees about the picture's horizontal axis (above 0: its top is farther) and about
+    /// the vertical one (above 0: its right side is farther). 0
+    std::optional<double> tilt_deg, swing_deg;
+    std::string aperture_image;      ///< .png or .exr file whose luminance is the lens, instead of blades
+    std::optional<double> cats_eye;  ///< how far a corner's lens is cut by the barrel, in lens radii; 0 to 1.5, 0
+    CameraOffset offset;             ///< the same for the whole frame
+    CameraOffset offset_before, offset_after;  ///< of the neighbouring frames: what flow leads to
 };
 
 struct ShutterSettings {
@@ -108,17 +117,34 @@ enum class VisibilityMethod {
     kMicropolygon   ///< the samples of kStochastic, triangles diced to about a pixel (Reyes; Cook et al. 1987)
 };
 
+/// How the samples of a pixel lie in pixel, lens and shutter (docs/learn/sample-patterns.md).
+enum class Sampler : std::uint8_t {
+    kStratified,  ///< nets over pixels and blocks of 4 x 4, vectors close in lens and time: the fastest
+    kSobol,       ///< Sobol' points, scrambled anew in each pixel
+    kBlueNoise,   ///< one Sobol' sequence for the picture, in an order that makes neighbours' errors differ
+    kIndependent  ///< random, for comparison
+};
+
+/// What finds the visible surface of each sample; shading and film are the processor's in both cases.
+enum class Backend {
+    kCpu,
+    kGl  ///< OpenGL 4.5, with the samples and the exact test of kCpu; Error(kBackend) without a driver or in a build
+         ///< without it. Of the visibility methods those that rasterize whole triangles
+};
+
 struct MethodSettings {
     VisibilityMethod visibility = VisibilityMethod::kStochastic;
+    Backend backend = Backend::kCpu;
     /// "auto" or a combination of culling_tests(); kRaytrace and kMicropolygon have no use for one: "auto" alone.
     std::string culling = "auto";
-    std::string shading = "pixel";  ///< how often visible surfaces are shaded
+    std::string shading = "decoupled";  ///< how often visible surfaces are shaded
     TextureFilter texture_filter = TextureFilter::kFull;
     BrdfModel brdf = BrdfModel::kGltf;
     ShadowMode shadows = ShadowMode::kMoving;  ///< kStill: of everything as it is at mid-shutter
-    std::uint32_t seed = 0;                    ///< of the sample pattern
-    int threads = 0;                           ///< 0: all processors
-    int tile_size = 32;                        ///< pixels, 8, 16 or 32: never changes the picture
+    Sampler sampler = Sampler::kStratified;
+    std::uint32_t seed = 0;  ///< of the sample pattern
+    int threads = 0;         ///< 0: all processors
+    int tile_size = 32;      ///< pixels, 8, 16 or 32: never changes the picture
 };
 
 struct RenderSettings {

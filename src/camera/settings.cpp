@@ -68,6 +68,24 @@ void check(const CameraSettings& camera, const ImageSettings& image) {
     check_from("--aperture-rotation", camera.aperture_rotation_deg, -kHuge, kHuge);
     check_from("--aperture-roundness", camera.aperture_roundness, 0.0, 1.0);
     check_above("--aperture-ratio", camera.aperture_ratio, 0.0);
+    check_from("--tilt", camera.tilt_deg, -89.0, 89.0);
+    check_from("--swing", camera.swing_deg, -89.0, 89.0);
+    check_from("--cats-eye", camera.cats_eye, 0.0, 1.5);
+    if (!camera.aperture_image.empty() && camera.aperture_blades)
+        refuse("--aperture-image and --aperture-blades exclude each other; give one of them");
+    if (!camera.aperture_image.empty() && camera.aperture_roundness)
+        refuse("--aperture-image has no blades to curve; leave --aperture-roundness out");
+    check_from("--max-foreground-blur", camera.max_foreground_blur, 0.0, kHuge);
+    if (camera.focus_range) {
+        const auto [from, to] = *camera.focus_range;
+        check_above("--focus-range", from, 0.0);
+        check_finite("--focus-range", to);
+        if (from > to) refuse(fmt::format("--focus-range {},{}: the nearest depth comes first", from, to));
+        if (camera.focus_distance && (*camera.focus_distance < from || *camera.focus_distance > to)) {
+            refuse(
+                fmt::format("--focus-range {},{}: --focus-distance {} lies outside", from, to, *camera.focus_distance));
+        }
+    }
     for (const CameraOffset* offset : {&camera.offset, &camera.offset_before, &camera.offset_after})
         for (int axis = 0; axis < 3; ++axis) {
             check_from("camera offset", offset->shift_m[axis], -kHuge, kHuge);
@@ -144,6 +162,8 @@ void check(const MethodSettings& method) {
         refuse(fmt::format("--culling {}: --visibility {} has no use for it; leave one of them out", method.culling,
                            name_of(method.visibility)));
     }
+    if (!culls && method.backend == Backend::kGl)
+        refuse(fmt::format("--backend gl: --visibility {} is the processor's alone", name_of(method.visibility)));
     if (method.shading != "pixel" && method.shading != "sample" && method.shading != "decoupled")
         refuse(fmt::format("--shading: '{}' is not pixel, sample or decoupled", method.shading));
     check_whole("--threads", method.threads, 0, 1024);
@@ -218,6 +238,20 @@ const char* name_of(ShadowMode mode) {
     return "moving";
 }
 
+const char* name_of(Sampler sampler) {
+    switch (sampler) {
+        case Sampler::kSobol:
+            return "sobol";
+        case Sampler::kBlueNoise:
+            return "blue-noise";
+        case Sampler::kIndependent:
+            return "independent";
+        case Sampler::kStratified:
+            break;
+    }
+    return "stratified";
+}
+
 using Json = nlohmann::ordered_json;
 
 // Options that were not given are left out: what they come to is in the header's own attributes.
@@ -253,10 +287,20 @@ void validate(const RenderSettings& settings) {
         refuse("--aov ste: the fast path keeps no account of pixels; name a test with --culling, such as hull");
     const bool shares_times = settings.method.visibility == VisibilityMethod::kAccumulation ||
                               settings.method.visibility == VisibilityMethod::kInterleaved;
-    if (settings.shutter.rolling != RollingShutter::kNone && shares_times) {
-        refuse(fmt::format("--rolling-shutter: with --visibility {} all rows share their times; leave one of them out",
-                           name_of(settings.method.visibility)));
+    if (settings.method.visibility == VisibilityMethod::kRaytrace) {
+        const char* shaped = settings.camera.focus_range           ? "--focus-range"
+                             : settings.camera.max_foreground_blur ? "--max-foreground-blur"
+                                                                   : nullptr;
+        if (shaped) refuse(fmt::format("{}: rays are straight, so --visibility raytrace cannot have it", shaped));
     }
+    const auto refuse_shared = [&](const char* option, const char* what) {
+        refuse(fmt::format("{}: with --visibility {} all {}; leave one of them out", option,
+                           name_of(settings.method.visibility), what));
+    };
+    if (!shares_times) return;
+    if (settings.shutter.rolling != RollingShutter::kNone) refuse_shared("--rolling-shutter", "rows share their times");
+    if (settings.camera.cats_eye.value_or(0.0) > 0.0) refuse_shared("--cats-eye", "places share their lens points");
+    if (settings.method.sampler != Sampler::kStratified) refuse_shared("--sampler", "pixels share a pattern");
 }
 
 std::string settings_json(const RenderSettings& settings, const std::string& scene_name, const std::string& hash) {
@@ -286,6 +330,12 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
     put(json, "aperture_rotation_deg", camera.aperture_rotation_deg);
     put(json, "aperture_roundness", camera.aperture_roundness);
     put(json, "aperture_ratio", camera.aperture_ratio);
+    put(json, "aperture_image", file_name(camera.aperture_image));
+    put(json, "cats_eye", camera.cats_eye);
+    put(json, "tilt_deg", camera.tilt_deg);
+    put(json, "swing_deg", camera.swing_deg);
+    put(json, "focus_range", camera.focus_range);
+    put(json, "max_foreground_blur", camera.max_foreground_blur);
     put(json, "camera_offset", camera.offset);
     put(json, "camera_offset_before", camera.offset_before);
     put(json, "camera_offset_after", camera.offset_after);
@@ -306,6 +356,7 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
                                                                               : "full";
     json["brdf"] = method.brdf == BrdfModel::kBurley ? "burley" : "gltf";
     json["shadows"] = name_of(method.shadows);
+    json["sampler"] = name_of(method.sampler);
     json["seed"] = method.seed;
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

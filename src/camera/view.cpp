@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_inverse.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
 #include <pentaprism/error.h>
 
 #include "camera/look.h"
@@ -109,18 +111,25 @@ double focus_distance(const Scene& scene, const CameraSettings& settings, const 
                         scene.name + ": nothing is seen at --focus-pixel; give a pixel that shows a surface");
         return depth;
     }
-    if (info.focus_distance) return *info.focus_distance;
+    if (info.focus_distance && !settings.focus_range) return *info.focus_distance;
+    if (view.lens.sharp_range) {  // a/z + b has opposite values at both ends
+        const auto [from, to] = *view.lens.sharp_range;
+        return view.perspective ? 2.0 / (1.0 / from + 1.0 / to) : 0.5 * (from + to);
+    }
     return default_focus(scene, pose, view);
 }
 
-void resolve_lens(const Scene& scene, const CameraSettings& settings, const LensInfo& info, double sensor_width_mm,
-                  const Pose& pose, View& view) {
+double sensor_width_of(const CameraSettings& settings, const LensInfo& info) {
+    return settings.sensor_width_mm.value_or(info.sensor_width_mm.value_or(36.0));
+}
+
+// Focal length and size of the lens.
+void resolve_size(const CameraSettings& settings, const LensInfo& info, View& view) {
     Lens& lens = view.lens;
+    const double sensor_width_mm = sensor_width_of(settings, info);
+    if (settings.focal_length_mm && view.perspective)
+        view.fx = view.fy = *settings.focal_length_mm * view.width / sensor_width_mm;
     view.focal_length_mm = view.perspective ? view.fx * sensor_width_mm / view.width : 0.0;
-    lens.blades = settings.aperture_blades.value_or(info.aperture_blades.value_or(0));
-    lens.rotation_deg = settings.aperture_rotation_deg.value_or(info.aperture_rotation_deg.value_or(0.0));
-    lens.roundness = settings.aperture_roundness.value_or(0.0);
-    lens.ratio = settings.aperture_ratio.value_or(info.aperture_ratio.value_or(1.0));
     if (!settings.defocus) return;
     if (settings.lens_radius) {
         lens.radius = *settings.lens_radius;
@@ -131,11 +140,64 @@ void resolve_lens(const Scene& scene, const CameraSettings& settings, const Lens
         lens.fstop = settings.fstop ? *settings.fstop : *info.fstop;
         lens.radius = view.focal_length_mm * 1e-3 / (2.0 * lens.fstop);
     }
+    if (lens.fstop == 0.0 && view.focal_length_mm > 0.0 && lens.radius > 0.0)
+        lens.fstop = view.focal_length_mm * 1e-3 / (2.0 * lens.radius);
+}
+
+std::string in_metres(const std::array<double, 2>& range) {
+    return fmt::format("{},{}", range[0], range[1]);
+}
+
+// What may not come together, wherever it was said.
+void check_lens(const Lens& lens) {
+    if (lens.sharp_range &&
+        (lens.focus_distance < (*lens.sharp_range)[0] || lens.focus_distance > (*lens.sharp_range)[1]))
+        throw Error(ErrorKind::kUsage, fmt::format("--focus-range {}: the focus lies outside, at {:.6g} m",
+                                                   in_metres(*lens.sharp_range), lens.focus_distance));
+    if (lens.tilt == glm::dvec2(0.0)) return;
+    if (!lens.straight() || lens.cats_eye > 0.0)
+        throw Error(ErrorKind::kUsage, fmt::format("{}: a plane of focus that leans (--tilt, --swing) cannot have it",
+                                                   lens.sharp_range      ? "--focus-range"
+                                                   : lens.cats_eye > 0.0 ? "--cats-eye"
+                                                                         : "--max-foreground-blur"));
+    if (!(lens.radius * std::hypot(lens.tilt.x, lens.ratio * lens.tilt.y) < 0.99 * lens.focus_distance))
+        throw Error(ErrorKind::kUsage,
+                    "--tilt, --swing: the plane of focus cuts the lens; lean it less or focus farther");
+}
+
+bool moves_camera(const Scene& scene, std::span<const Index> animations, Index camera) {
+    return std::any_of(animations.begin(), animations.end(), [&](Index a) {
+        const std::vector<Channel>& channels = scene.animations[a].channels;
+        return std::any_of(channels.begin(), channels.end(), [&](const Channel& c) { return c.camera == camera; });
+    });
+}
+
+// Leans by these angles about the horizontal and the vertical axis: the top, the right side is farther.
+glm::dvec2 tilt_of(const CameraSettings& settings, const LensInfo& info) {
+    constexpr double degree = std::numbers::pi / 180.0;
+    return {-std::tan(degree * settings.swing_deg.value_or(info.swing_deg.value_or(0.0))),
+            -std::tan(degree * settings.tilt_deg.value_or(info.tilt_deg.value_or(0.0)))};
+}
+
+void resolve_lens(const Scene& scene, const CameraSettings& settings, const LensInfo& info, const Pose& pose,
+                  View& view) {
+    Lens& lens = view.lens;
+    lens.blades = settings.aperture_blades.value_or(info.aperture_blades.value_or(0));
+    lens.rotation_deg = settings.aperture_rotation_deg.value_or(info.aperture_rotation_deg.value_or(0.0));
+    lens.roundness = settings.aperture_roundness.value_or(0.0);
+    lens.ratio = settings.aperture_ratio.value_or(info.aperture_ratio.value_or(1.0));
+    if (!settings.aperture_image.empty())
+        lens.image = std::make_shared<const ApertureImage>(read_aperture_image(settings.aperture_image));
+    resolve_size(settings, info, view);
     if (lens.radius == 0.0) return;
-    if (lens.fstop == 0.0 && view.focal_length_mm > 0.0) lens.fstop = view.focal_length_mm * 1e-3 / (2.0 * lens.radius);
+    lens.cats_eye = settings.cats_eye.value_or(info.cats_eye.value_or(0.0));
+    lens.tilt = tilt_of(settings, info);
+    lens.sharp_range = settings.focus_range ? settings.focus_range : info.focus_range;
+    if (const auto most = settings.max_foreground_blur ? settings.max_foreground_blur : info.max_foreground_blur)
+        lens.max_foreground_px = *most;
     lens.focus_distance = focus_distance(scene, settings, info, pose, view);
-    lens.a = -lens.radius * view.fx;
-    lens.b = lens.radius * view.fx / lens.focus_distance;
+    check_lens(lens);
+    lens.focus(view.fx);
 }
 
 Shutter resolve_shutter(const RenderSettings& settings, const LensInfo& info, double frame) {
@@ -192,30 +254,60 @@ glm::dmat4 world_to_camera(const View& view, const Pose& pose) {
     const glm::dmat4 to_camera = world_to_scene_camera(view, pose);
     return view.offset ? *view.offset * to_camera : to_camera;
 }
+
 View make_view(const Scene& scene, const RenderSettings& settings, double frame) {
     View view;
     view.width = settings.image.width;
     view.height = settings.image.height;
+    view.offset = offset_matrix(settings.camera.offset);
     const std::vector<Index> animations = choose_animations(scene, settings.animation.animation);
     view.camera_node = find_camera_node(scene, settings.camera.camera);
-    LensInfo info;
     if (view.camera_node == kNone) {
         frame_scene(scene, animations, view);
-    } else {
-        const Camera& camera = scene.cameras[scene.nodes[view.camera_node].camera];
-        apply_projection(camera, view);
-        info = camera.lens;
-        const std::string& node_name = scene.nodes[view.camera_node].name;
-        view.camera_name = node_name.empty() ? camera.name : node_name;
+        view.shutter = resolve_shutter(settings, LensInfo{}, frame);
+        const Pose middle = evaluate(scene, animations, view.shutter.middle());
+        resolve_lens(scene, settings.camera, LensInfo{}, middle, view);
+        return view;
     }
-    view.offset = offset_matrix(settings.camera.offset);
-    const double sensor_width_mm = settings.camera.sensor_width_mm.value_or(info.sensor_width_mm.value_or(36.0));
-    if (settings.camera.focal_length_mm && view.perspective)
-        view.fx = view.fy = *settings.camera.focal_length_mm * view.width / sensor_width_mm;
-    view.shutter = resolve_shutter(settings, info, frame);
-    resolve_lens(scene, settings.camera, info, sensor_width_mm, evaluate(scene, animations, view.shutter.middle()),
-                 view);
+    const Index index = scene.nodes[view.camera_node].camera;
+    view.shutter = resolve_shutter(settings, scene.cameras[index].lens, frame);
+    const Pose middle = evaluate(scene, animations, view.shutter.middle());
+    const Camera& camera = camera_at(scene, middle, index);
+    apply_projection(camera, view);
+    const std::string& node_name = scene.nodes[view.camera_node].name;
+    view.camera_name = node_name.empty() ? camera.name : node_name;
+    view.optics_move = moves_camera(scene, animations, index);
+    if (view.optics_move) view.asked = settings.camera;
+    resolve_lens(scene, settings.camera, camera.lens, middle, view);
     return view;
+}
+
+View view_at(const Scene& scene, const View& view, const Pose& pose) {
+    if (!view.optics_move) return view;
+    const Camera& camera = camera_at(scene, pose, scene.nodes[view.camera_node].camera);
+    View now = view;
+    apply_projection(camera, now);
+    resolve_size(view.asked, camera.lens, now);
+    if (now.lens.radius == 0.0) return now;
+    const bool pulls = !view.asked.focus_distance && !view.asked.focus_range && view.asked.focus_object.empty() &&
+                       !view.asked.focus_pixel;
+    if (pulls && camera.lens.focus_distance) now.lens.focus_distance = *camera.lens.focus_distance;
+    check_lens(now.lens);
+    now.lens.focus(now.fx);
+    return now;
+}
+
+LineOfSight line_of_sight(const View& view, double gx, double gy, double u, double v) {
+    const Lens& lens = view.lens;
+    const glm::dvec2 g(gx, gy), uv(u, v), lean = lens.tilt / glm::dvec2(view.fx, view.fy);
+    LineOfSight line{-lens.a * uv, -lens.b * uv};
+    (view.perspective ? line.direction : line.origin) += g;
+    if (lens.tilt == glm::dvec2(0.0)) return line;
+    // (x, y) + uv * b * (lean . (x, y)) is on the line above; so lean . (x, y) is affine in depth, too.
+    const double share = lens.b / (1.0 + lens.b * glm::dot(lean, uv));
+    line.origin -= share * glm::dot(lean, line.origin) * uv;
+    line.direction -= share * glm::dot(lean, line.direction) * uv;
+    return line;
 }
 
 }  // namespace pentaprism

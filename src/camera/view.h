@@ -13,25 +13,11 @@
 #include <string>
 #include <vector>
 
+#include "camera/lens.h"
 #include "camera/shutter_curve.h"
 #include "scene/pose.h"
 
 namespace pentaprism {
-
-/// c(z) = a + b * z: signed circle of confusion, a radius in pixels times w; negative in front of the focus plane. A
-/// sample (u, v) sees a point at (x + u*c, y + v*ratio*c). Derivation: thin lens of radius A focused at F, with f_px =
-/// fx: a = -A*f_px, b = A*f_px/F (perspective). An orthographic camera shears by the same slope: a = -A*fx, b = A*fx/F.
-struct Lens {
-    double a = 0.0, b = 0.0;
-    double ratio = 1.0;   ///< height of the circle of confusion over its width (algorithms' lambda, pixels square)
-    double radius = 0.0;  ///< metres, 0: pinhole
-    double focus_distance = 0.0;  ///< metres
-    double fstop = 0.0;           ///< 0: pinhole
-    int blades = 0;               ///< 0: a disk
-    double rotation_deg = 0.0;
-    double roundness = 0.0;  ///< of the blades: 0 straight, 1 arcs of the disk
-    bool pinhole() const { return radius == 0.0; }
-};
 
 /// Shutter open and close in seconds; equal when nothing may move. A rolling shutter opens at `open` for the first row
 /// and closes at `close` for the last.
@@ -58,8 +44,16 @@ struct View {
     std::optional<glm::dmat4> offset;       ///< from the scene's camera to that of CameraSettings::offset
     std::string camera_name;
     double focal_length_mm = 0.0;
+    bool optics_move = false;  ///< zoom or focus are animated: see view_at()
+    CameraSettings asked{};    ///< what they follow from, if they are
     /// Smallest w that counts as in front of the camera in screen bounds: depth_near, or 1/2 for w = 1 everywhere.
     double w_near() const { return perspective ? depth_near : 0.5; }
+    /// Signed circle of confusion of a point of raster clip space (x, y, and depth z), a radius in pixels times w.
+    double coc(double x, double y, double z) const {
+        return lens.coc(z + lens.tilt.x * x / fx + lens.tilt.y * y / fy, perspective, depth_near);
+    }
+    /// Lines of sight of one time are straight, and so are those of all times.
+    bool has_straight_sight() const { return lens.pinhole() || (lens.straight() && !optics_move); }
 };
 
 /// World to camera space (right-handed, looking along -z) at the time of the pose.
@@ -70,6 +64,16 @@ inline glm::dvec4 to_raster_clip(const View& view, const glm::dvec3& camera_spac
     const double depth = -camera_space.z;
     return {view.fx * camera_space.x, view.fy * camera_space.y, view.perspective ? depth : 1.0, depth};
 }
+
+/// What the sample (gx, gy, u, v), as the exact test has it, sees: the points origin + depth * direction of (x, y) in
+/// raster clip space. Of a view with straight sight.
+struct LineOfSight {
+    glm::dvec2 origin, direction;
+};
+LineOfSight line_of_sight(const View& view, double gx, double gy, double u, double v);
+
+/// The view at another time of its shutter: projection and lens where they are animated.
+View view_at(const Scene& scene, const View& view, const Pose& pose);
 
 /// Resolves camera, lens and shutter of frame number `frame`. Throws Error(kUsage) for a camera, node or animation that
 /// the scene does not have.

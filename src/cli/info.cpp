@@ -76,6 +76,11 @@ Json lens_json(const LensInfo& lens) {
     put(json, "aperture_blades", lens.aperture_blades);
     put(json, "aperture_rotation_deg", lens.aperture_rotation_deg);
     put(json, "aperture_ratio", lens.aperture_ratio);
+    put(json, "focus_range", lens.focus_range);
+    put(json, "max_foreground_blur", lens.max_foreground_blur);
+    put(json, "tilt_deg", lens.tilt_deg);
+    put(json, "swing_deg", lens.swing_deg);
+    put(json, "cats_eye", lens.cats_eye);
     return json;
 }
 
@@ -200,7 +205,10 @@ std::string quoted(const Json& name) {
 
 std::string lens_text(const Json& lens) {
     std::string text;
-    for (const auto& [key, value] : lens.items()) text += fmt::format(", {} {:.6g}", key, value.get<double>());
+    for (const auto& [key, value] : lens.items())
+        text += value.is_number()
+                    ? fmt::format(", {} {:.6g}", key, value.get<double>())
+                    : fmt::format(", {} {:.6g} to {:.6g}", key, value[0].get<double>(), value[1].get<double>());
     return text;
 }
 

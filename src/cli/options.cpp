@@ -19,20 +19,6 @@ bool ends_with(const std::string& text, const std::string& end) {
     return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-/// An option of which one value is built and others are planned.
-void add_partly_built(CLI::App& command, const std::string& group, const std::string& name,
-                      const std::string& description, const std::string& built, std::vector<std::string> planned) {
-    std::string form = built;
-    for (const std::string& value : planned) form += "|" + value;
-    add_value(command, group, name, form, description + " (only " + built + " is built)", [=](const std::string& text) {
-        if (text == built) return;
-        for (const std::string& value : planned) {
-            if (value == text) refuse_as_planned(name + " " + text);
-        }
-        throw Error(ErrorKind::kUsage, fmt::format("{}: '{}' is not one of {}", name, text, form));
-    });
-}
-
 void add_image_options(CLI::App& command, ImageSettings& image) {
     const std::string group = "Image";
     add_value(command, group, "-r,--resolution", "WxH", "Size in pixels, 1 to 16384 (default 1280x720)",
@@ -122,9 +108,26 @@ void add_lens_options(CLI::App& command, CameraSettings& camera) {
                camera.aperture_roundness);
     add_number(command, group, "--aperture-ratio", "R",
                "Height over width of the circle of confusion (default: the camera's, else 1)", camera.aperture_ratio);
-    add_planned_value(command, group, "--focus-range", "NEAR,FAR", "Keep this range of depth sharp; metres");
-    add_planned_value(command, group, "--max-foreground-blur", "PX",
-                      "Largest blur in front of the focus, a radius in pixels");
+    add_value(command, group, "--focus-range", "NEAR,FAR",
+              "Keep this range of depth sharp; metres (default: the camera's, else a real lens)",
+              [&](const std::string& text) {
+                  const auto values = parse_numbers("--focus-range", text, 2, "NEAR,FAR");
+                  camera.focus_range = {values[0], values[1]};
+              });
+    add_number(command, group, "--tilt", "DEG",
+               "Leans the plane of focus: above 0, its top is farther (default: the camera's, else 0)",
+               camera.tilt_deg);
+    add_number(command, group, "--swing", "DEG", "The same for its right side", camera.swing_deg);
+    add_value(command, group, "--aperture-image", "FILE",
+              "A picture, .png or .exr, as the lens: light comes through its circle where it is bright",
+              [&](const std::string& text) { camera.aperture_image = text; });
+    add_number(command, group, "--cats-eye", "A",
+               "How far the barrel hides the lens in a corner of the picture, 0 to 1.5 lens radii (default: the "
+               "camera's, else 0)",
+               camera.cats_eye);
+    add_number(command, group, "--max-foreground-blur", "PX",
+               "Largest blur in front of the focus, a radius in pixels (default: the camera's, else any)",
+               camera.max_foreground_blur);
     command
         .add_flag_callback(
             "--no-defocus", [&] { camera.defocus = false; }, "A pinhole, whatever else is said")
@@ -192,9 +195,13 @@ void add_method_options(CLI::App& command, MethodSettings& method) {
                                                       {"raytrace", VisibilityMethod::kRaytrace},
                                                       {"micropolygon", VisibilityMethod::kMicropolygon}});
               });
-    add_partly_built(command, group, "--backend", "What computes", "cpu", {"gl"});
+    add_value(
+        command, group, "--backend", "cpu|gl",
+        "What finds visible surfaces: the processor, or OpenGL 4.5 (default cpu)", [&](const std::string& text) {
+            method.backend = parse_choice<Backend>("--backend", text, {{"cpu", Backend::kCpu}, {"gl", Backend::kGl}});
+        });
     add_value(command, group, "--shading", "pixel|sample|decoupled",
-              "How often visible surfaces are shaded (default pixel)", [&](const std::string& text) {
+              "How often visible surfaces are shaded (default decoupled)", [&](const std::string& text) {
                   method.shading = parse_choice<std::string>(
                       "--shading", text, {{"pixel", "pixel"}, {"sample", "sample"}, {"decoupled", "decoupled"}});
               });
@@ -217,7 +224,14 @@ void add_method_options(CLI::App& command, MethodSettings& method) {
                       "--shadows", text,
                       {{"off", ShadowMode::kOff}, {"still", ShadowMode::kStill}, {"moving", ShadowMode::kMoving}});
               });
-    add_planned_value(command, group, "--sampler", "NAME", "Sample pattern");
+    add_value(command, group, "--sampler", "stratified|sobol|blue-noise|independent",
+              "Sample pattern (default stratified, the fastest)", [&](const std::string& text) {
+                  method.sampler = parse_choice<Sampler>("--sampler", text,
+                                                         {{"stratified", Sampler::kStratified},
+                                                          {"sobol", Sampler::kSobol},
+                                                          {"blue-noise", Sampler::kBlueNoise},
+                                                          {"independent", Sampler::kIndependent}});
+              });
     add_value(command, group, "--seed", "N", "Seed of the sample pattern (default 0)", [&](const std::string& text) {
         method.seed =
             static_cast<std::uint32_t>(parse_whole("--seed", text, 0, std::numeric_limits<std::uint32_t>::max()));

@@ -145,6 +145,12 @@ std::vector<std::int64_t> frames_to_do(const RenderCommand& command, const Frame
     return frames;
 }
 
+// A colour that samples share holds the blur that was rendered: what is developed later wants each its own.
+void keep_samples_apart(MethodSettings& method) {
+    method.shading = "sample";
+    if (method.texture_filter == TextureFilter::kFull) method.texture_filter = TextureFilter::kPixel;
+}
+
 // MPI processes share out the work as shards do.
 void share_with_ranks(RenderCommand& command) {
     command.ranks = join_ranks();
@@ -165,6 +171,7 @@ std::unique_ptr<FrameOutput> make_output(const RenderCommand& command, const Fra
 
 int render(RenderCommand& command) {
     complete_settings(command.settings);
+    if (!command.samples.empty()) keep_samples_apart(command.settings.method);
     share_with_ranks(command);
     if (command.randomization) check_randomization(command.settings, *command.randomization);
     check_kind(command);

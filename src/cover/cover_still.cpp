@@ -7,7 +7,7 @@
 //   2. for each, the pixels in which a sample may be covered and that are not hidden, as one flat list;
 //   3. a pass over the list does the exact test, depth and writes without branching on what it finds
 //   (still_test-inl.h).
-// Depths and triangles stand pixel by pixel meanwhile; at the end they are transposed to the order of Hits.
+// Depths and triangles stand pixel by pixel in the tile's Hits meanwhile; at the end each block is transposed.
 // This file is compiled once for each CPU target.
 
 #undef HWY_TARGET_INCLUDE
@@ -58,7 +58,7 @@ void cover_batch(StillTile& tile, StillBatch& batch, std::uint32_t* jobs) {
     std::size_t count = 0;
     for (int k = 0; k < batch.count; ++k) {
         const CellRect rect = rect_of(*batch.binned[k], tile.work.tile);
-        const std::size_t listed = list_pixels(batch, k, rect, tile.farthest.data(), jobs + count);
+        const std::size_t listed = list_pixels(batch, k, rect, tile.farthest, jobs + count);
         if (batch.special[k] != 0)
             cover_special(tile, batch, k, jobs + count, listed);
         else
@@ -76,12 +76,28 @@ void update_tile_farthest(StillTile& tile) {
     tile.tile_farthest = hn::GetLane(hn::MaxOfLanes(f, farthest));
 }
 
+// Sorted by depth, triangles lie anywhere in memory.
+HWY_INLINE void fetch_ahead(const TileWork& work, const std::vector<std::uint32_t>& order, std::size_t i) {
+    constexpr std::size_t kAhead = 8;
+    const auto binned = [&](std::size_t steps) -> const BinnedTriangle& {
+        return work.triangles[order[std::min(i + steps * kAhead, order.size() - 1)]];
+    };
+    const Frame& frame = work.frame;
+    hwy::Prefetch(&binned(3));
+    hwy::Prefetch(&frame.corners[3 * std::size_t{binned(2).triangle}]);
+    hwy::Prefetch(&frame.part_of[binned(2).triangle]);
+    const std::uint32_t* corners = &frame.corners[3 * std::size_t{binned(1).triangle}];
+    for (int corner = 0; corner < 3; ++corner) hwy::Prefetch(&frame.points[corners[corner]]);
+}
+
 void cover_front_to_back(StillTile& tile) {
     const TileWork& work = tile.work;
     StillBatch batch{};
     std::vector<std::uint32_t> jobs((StillBatch::kSize + 1) * StillTile::kPixels);
-    for (const std::uint32_t entry : front_to_back(work)) {
-        const BinnedTriangle& binned = work.triangles[entry];
+    const std::vector<std::uint32_t> order = front_to_back(work);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        fetch_ahead(work, order, i);
+        const BinnedTriangle& binned = work.triangles[order[i]];
         const float nearest = nearest_depth(work, binned);
         if (nearest > tile.tile_farthest) break;  // so are all that follow
         const bool two_sided = work.frame.parts[work.frame.part_of[binned.triangle]].two_sided;
@@ -113,19 +129,22 @@ HWY_INLINE void transpose(const T* HWY_RESTRICT from, std::size_t stride, T* HWY
         }
 }
 
-void write_hits(const StillTile& tile, Hits& hits) {
-    for (std::size_t block = 0; block < kBlocksPerCell; ++block)
-        for (std::size_t first = 0; first < tile.spp; first += kLanes) {
-            const std::size_t from = block * kLanes * tile.spp + first, to = (block * tile.spp + first) * kLanes;
-            transpose(&tile.depth[from], tile.spp, &hits.depth[to]);
-            transpose(&tile.triangle[from], tile.spp, &hits.triangle[to]);
-        }
+// From the order of PixelSamples to that of Hits, in place.
+template <class T>
+void arrange_by_slot(T* values, std::size_t spp) {
+    const std::size_t size = kLanes * spp;  // of a block
+    AlignedVector<T> block(size);
+    for (T* end = values + kBlocksPerCell * size; values != end; values += size) {
+        std::copy_n(values, size, block.data());
+        for (std::size_t slot = 0; slot < spp; slot += kLanes) transpose(&block[slot], spp, values + slot * kLanes);
+    }
 }
 
 // Sets the depth of the cell's pixels that lie outside the tile.
 void set_outside(StillTile& tile, float depth) {
     const Tile& t = tile.work.tile;
     const int left = t.cell_x() * kCellSize, top = t.cell_y() * kCellSize;
+    if (t.x1 - t.x0 == kCellSize && t.y1 - t.y0 == kCellSize) return;
     for (int pixel = 0; pixel < StillTile::kPixels; ++pixel) {
         const int block = pixel / kLanes, lane = pixel % kLanes;
         const int px = left + block % kCellBlocks * kBlockSize + lane % kBlockSize;
@@ -139,11 +158,12 @@ void set_outside(StillTile& tile, float depth) {
 }  // namespace
 
 void cover_still_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
-    StillTile tile(work, work.samples.by_pixel(work.tile.cell_x(), work.tile.cell_y()));
+    StillTile tile(work, work.samples.by_pixel(work.tile.cell_x(), work.tile.cell_y()), hits);
     set_outside(tile, -INFINITY);
     cover_front_to_back(tile);
     set_outside(tile, INFINITY);
-    write_hits(tile, hits);
+    arrange_by_slot(tile.depth, tile.spp);
+    arrange_by_slot(tile.triangle, tile.spp);
     counts.tested += tile.tested;
     counts.covered += tile.covered;
 }

@@ -170,12 +170,29 @@ constexpr std::uint32_t pixel_job(int k, int pixel) {
     return static_cast<std::uint32_t>(k << 16 | pixel);
 }
 
+// Writes first + lane for the lanes whose bit is set; returns how many. Writes up to sixteen.
+HWY_INLINE std::size_t write_lanes(std::uint32_t first, std::uint32_t lanes, std::uint32_t* HWY_RESTRICT jobs) {
+    if constexpr (kWidth == kLanes) {
+        const U u;
+        const auto bits = static_cast<std::uint64_t>(lanes);
+        const auto mask = hn::LoadMaskBits(u, reinterpret_cast<const std::uint8_t*>(&bits));
+        hn::StoreU(hn::Compress(hn::Add(hn::Iota(u, 0), hn::Set(u, first)), mask), u, jobs);
+    } else {  // a vector's Compress is slow elsewhere: eight at a time, wanted or not
+        std::uint32_t m = lanes;
+        for (int i = 0; i < 8; ++i, m &= m - 1) jobs[i] = first + static_cast<std::uint32_t>(std::countr_zero(m));
+        if (m != 0)
+            for (int i = 8; i < kLanes; ++i, m &= m - 1)
+                jobs[i] = first + static_cast<std::uint32_t>(std::countr_zero(m));
+    }
+    return static_cast<std::size_t>(std::popcount(lanes));
+}
+
 // Writes the pixels of triangle k that lie within its half-planes and rectangle and show something no nearer than it;
-// `farthest`: by pixel. Returns how many; writes up to a vector more.
+// `farthest`: by pixel. Returns how many; writes up to sixteen more.
 HWY_INLINE std::size_t list_pixels(const StillBatch& batch, int k, const CellRect& rect, const float* farthest,
                                    std::uint32_t* HWY_RESTRICT jobs) {
     const F f;
-    const U u;
+    const I i32;
     const Vec nearest = hn::Set(f, batch.nearest[k]);
     Vec nx[3], ny[3], room[3];
     for (int e = 0; e < 3; ++e) {
@@ -187,22 +204,17 @@ HWY_INLINE std::size_t list_pixels(const StillBatch& batch, int k, const CellRec
     for (int row = rect.y0 & -kBlockSize; row < rect.y1; row += kBlockSize)
         for (int column = rect.x0 & -kBlockSize; column < rect.x1; column += kBlockSize) {
             const int first = (row / kBlockSize * kCellBlocks + column / kBlockSize) * kLanes;
-            const std::uint32_t in_rect = lanes_in(rect, column, row);
+            std::uint32_t kept = lanes_in(rect, column, row);
             for (int lane = 0; lane < kLanes; lane += kWidth) {
-                const auto lanes = hn::Iota(u, static_cast<std::uint32_t>(lane));
-                const auto to_float = [&](auto n) HWY_ATTR { return hn::ConvertTo(f, hn::BitCast(I(), n)); };
-                const Vec c = hn::Add(to_float(hn::And(lanes, hn::Set(u, 3))), hn::Set(f, static_cast<float>(column)));
-                const Vec r = hn::Add(to_float(hn::ShiftRight<2>(lanes)), hn::Set(f, static_cast<float>(row)));
+                const auto lanes = hn::Iota(i32, lane);
+                const Vec c = hn::ConvertTo(f, hn::Add(hn::And(lanes, hn::Set(i32, 3)), hn::Set(i32, column)));
+                const Vec r = hn::ConvertTo(f, hn::Add(hn::ShiftRight<2>(lanes), hn::Set(i32, row)));
                 Vec least = hn::Sub(hn::Load(f, farthest + first + lane), nearest);
                 for (int e = 0; e < 3; ++e)
                     least = hn::Min(least, hn::MulAdd(ny[e], r, hn::NegMulAdd(nx[e], c, room[e])));
-                const auto kept = static_cast<std::uint32_t>(bits_of(f, hn::Ge(least, hn::Zero(f)))) & in_rect >> lane;
-                const auto bits = static_cast<std::uint64_t>(kept);
-                const auto mask = hn::LoadMaskBits(u, reinterpret_cast<const std::uint8_t*>(&bits));
-                const auto all = hn::Add(lanes, hn::Set(u, pixel_job(k, first)));
-                hn::StoreU(hn::Compress(all, mask), u, jobs + count);
-                count += static_cast<std::size_t>(std::popcount(kept));
+                kept &= ~(static_cast<std::uint32_t>(bits_of(f, hn::Lt(least, hn::Zero(f)))) << lane);
             }
+            count += write_lanes(pixel_job(k, first), kept, jobs + count);
         }
     return count;
 }

@@ -9,6 +9,7 @@
 #endif
 
 #include <cmath>
+#include <hwy/cache_control.h>
 
 #include "cover/still_batch-inl.h"
 #include "cover/vector_test-inl.h"
@@ -19,24 +20,25 @@ namespace HWY_NAMESPACE {
 
 // The tile's samples and hits, pixel by pixel as in PixelSamples.
 struct StillTile {
-    StillTile(const TileWork& w, const PixelSamples& s)
+    StillTile(const TileWork& w, const PixelSamples& s, Hits& hits)
         : work(w),
           samples(s),
           centre(cell_centre(w.frame.view, w.tile.cell_x(), w.tile.cell_y())),
           spp(static_cast<std::size_t>(w.samples.spp())),
-          depth(s.x.size(), INFINITY),
-          triangle(s.x.size(), kNoTriangle),
-          farthest(kPixels, INFINITY) {}
+          depth(hits.depth.data()),
+          triangle(hits.triangle.data()) {
+        std::fill_n(farthest, kPixels, INFINITY);
+    }
 
     static constexpr int kPixels = kBlocksPerCell * kLanes;
     const TileWork& work;
     PixelSamples samples;
     CellCentre centre;
     std::size_t spp;
-    AlignedVector<float> depth;  // -infinity outside the tile: nothing is nearer
-    AlignedVector<std::uint32_t> triangle;
-    AlignedVector<float> farthest;   // by pixel: largest depth stored so far
-    float tile_farthest = INFINITY;  // no smaller than any of `farthest`
+    float* depth;  // of the tile's Hits; -infinity outside the tile: nothing is nearer
+    std::uint32_t* triangle;
+    HWY_ALIGN float farthest[kPixels];  // by pixel: largest depth stored so far
+    float tile_farthest = INFINITY;     // no smaller than any of `farthest`
     std::int64_t tested = 0, covered = 0;
 };
 
@@ -85,10 +87,10 @@ HWY_NOINLINE inline Mask decide_alpha(F f, const StillTile& tile, const SpecialT
     return decide_opacity(f, tile.work, special.T.triangle, special.terms, e, sum, hit, lanes);
 }
 
-// Samples [at, at + kWidth) of a pixel. Returns the depths they show now. `special`: of a triangle that is not, unused.
+// Samples [at, at + kWidth) of a pixel. `special`: of a triangle that is not, unused.
 template <bool kSpecial>
-HWY_INLINE Vec cover_lanes(F f, StillTile& tile, const StillBatch& batch, int k, std::size_t at,
-                           const SpecialTriangle* special) {
+HWY_INLINE void cover_lanes(F f, StillTile& tile, const StillBatch& batch, int k, std::size_t at,
+                            const SpecialTriangle* special) {
     const U u;
     const Vec hx = hn::Load(f, &tile.samples.x[at]), hy = hn::Load(f, &tile.samples.y[at]), zero = hn::Zero(f);
     Deltas D;
@@ -119,22 +121,33 @@ HWY_INLINE Vec cover_lanes(F f, StillTile& tile, const StillBatch& batch, int k,
     }
     if constexpr (kSpecial)
         if (special->T.alpha_tested && !hn::AllFalse(f, hit)) hit = decide_alpha(f, tile, *special, E.e, sum, at, hit);
-    const Vec nearest = hn::IfThenElse(hit, depth, stored);
-    hn::Store(nearest, f, &tile.depth[at]);
+    hn::Store(hn::IfThenElse(hit, depth, stored), f, &tile.depth[at]);
     hn::Store(hn::IfThenElse(hn::RebindMask(u, hit), triangle, stored_triangle), u, &tile.triangle[at]);
-    return nearest;
 }
 
+// The exact test of all jobs, then what is farthest in their pixels: apart from the test, whose chain of operations is
+// longer than the processor looks ahead, the reductions overlap.
 template <bool kSpecial>
 void cover_pixels(StillTile& tile, const StillBatch& batch, const std::uint32_t* jobs, std::size_t count,
                   const SpecialTriangle* special) {
     const F f;
+    constexpr std::size_t kAhead = 6;  // jobs whose samples and hits are fetched from the second-level cache meanwhile
     for (std::size_t j = 0; j < count; ++j) {
+        const std::size_t later = (jobs[std::min(j + kAhead, count - 1)] & 0xffff) * tile.spp;
+        hwy::Prefetch(&tile.samples.x[later]);
+        hwy::Prefetch(&tile.samples.y[later]);
+        hwy::Prefetch(&tile.depth[later]);
+        hwy::Prefetch(&tile.triangle[later]);
         const int k = static_cast<int>(jobs[j] >> 16);
         const std::size_t pixel = jobs[j] & 0xffff;
-        Vec farthest = hn::Set(f, -INFINITY);
         for (std::size_t at = pixel * tile.spp; at < (pixel + 1) * tile.spp; at += kWidth)
-            farthest = hn::Max(farthest, cover_lanes<kSpecial>(f, tile, batch, k, at, special));
+            cover_lanes<kSpecial>(f, tile, batch, k, at, special);
+    }
+    for (std::size_t j = 0; j < count; ++j) {
+        const std::size_t pixel = jobs[j] & 0xffff;
+        Vec farthest = hn::Load(f, &tile.depth[pixel * tile.spp]);
+        for (std::size_t at = pixel * tile.spp + kWidth; at < (pixel + 1) * tile.spp; at += kWidth)
+            farthest = hn::Max(farthest, hn::Load(f, &tile.depth[at]));
         tile.farthest[pixel] = hn::GetLane(hn::MaxOfLanes(f, farthest));
     }
     tile.tested += static_cast<std::int64_t>(count * tile.spp);

@@ -88,6 +88,56 @@ HWY_INLINE Vec texture_alpha(F f, const OpacityTerms& terms, Vec s, Vec t, std::
     return hn::Mul(between(above, below, share_y), hn::Set(f, 1.0f / 255.0f));
 }
 
+using Words = hn::Vec<U>;
+
+// mix() and permuted() of frame/opacity.cpp, step by step; there is who they are by.
+HWY_INLINE Words mixed_bits(U u, Words x) {
+    x = hn::Mul(hn::Xor(x, hn::ShiftRight<16>(x)), hn::Set(u, 0x7feb352du));
+    x = hn::Mul(hn::Xor(x, hn::ShiftRight<15>(x)), hn::Set(u, 0x846ca68bu));
+    return hn::Xor(x, hn::ShiftRight<16>(x));
+}
+
+HWY_INLINE Words permuted_once(U u, Words i, Words mask, Words seed) {
+    i = hn::And(hn::Add(i, seed), mask);
+    i = hn::Xor(i, hn::And(hn::ShiftRight<16>(seed), mask));
+    i = hn::Mul(i, hn::Set(u, 0xe170893du));
+    i = hn::And(hn::Xor(i, hn::ShiftRight<8>(seed)), mask);
+    i = hn::Xor(i, hn::ShiftRight<4>(i));
+    const Words factor = hn::Xor(hn::Set(u, 0x0929eb3fu), hn::ShiftLeft<1>(hn::ShiftRight<23>(seed)));
+    i = hn::And(hn::Mul(i, factor), mask);
+    i = hn::Xor(i, hn::ShiftRight<1>(i));
+    i = hn::And(hn::Mul(i, hn::Set(u, 0x6935fa69u)), mask);
+    i = hn::Xor(i, hn::ShiftRight<11>(i));
+    i = hn::And(hn::Mul(i, hn::Set(u, 0x74dcb303u)), mask);
+    i = hn::Xor(i, hn::ShiftRight<2>(i));
+    i = hn::And(hn::Mul(i, hn::Set(u, 0x9e501cc3u)), mask);
+    return hn::Xor(i, hn::ShiftRight<2>(i));
+}
+
+HWY_INLINE Words permuted(U u, Words i, std::uint32_t n, Words seed) {
+    const I as_signed;  // numbers are small
+    const Words mask = hn::Set(u, std::bit_ceil(n) - 1);
+    const auto outside = [&](Words x) HWY_ATTR {
+        return hn::RebindMask(u, hn::Gt(hn::BitCast(as_signed, x), hn::Set(as_signed, static_cast<int>(n) - 1)));
+    };
+    i = permuted_once(u, i, mask, seed);
+    for (auto again = outside(i); !hn::AllFalse(u, again); again = outside(i))
+        i = hn::IfThenElse(again, permuted_once(u, i, mask, seed), i);
+    return i;
+}
+
+// opacity_threshold() of frame/opacity.h in lanes.
+HWY_INLINE Vec opacity_thresholds(F f, std::uint32_t triangle, Words px, Words py, Words index, std::uint32_t spp) {
+    const U u;
+    const auto to_float = [&](Words x) HWY_ATTR { return hn::ConvertTo(f, hn::BitCast(I(), x)); };
+    const Words pixel = mixed_bits(u, hn::Add(mixed_bits(u, px), py));
+    const Words seed = mixed_bits(u, hn::Add(pixel, mixed_bits(u, hn::Set(u, triangle + 0x9e3779b9u))));
+    const Words random = mixed_bits(u, hn::Add(seed, hn::Add(index, hn::Set(u, 1u))));
+    const Vec offset = hn::Mul(to_float(hn::ShiftRight<8>(random)), hn::Set(f, 0x1p-24f));
+    const Vec place = hn::Add(to_float(permuted(u, index, spp, seed)), offset);
+    return hn::Min(hn::Div(place, hn::Set(f, static_cast<float>(spp))), hn::Set(f, 1.0f - 0x1p-24f));
+}
+
 // Which sample of the picture stands in a lane. Functions below take it from `sample_of(k)`, k: the lane of the Vec.
 struct SampleOfPixel {
     int px, py, index;
@@ -97,14 +147,20 @@ struct SampleOfPixel {
 template <class SampleOf>
 HWY_NOINLINE Mask exceeds_threshold(F f, const TileWork& work, std::uint32_t triangle, Vec alpha, Mask ask,
                                     const SampleOf& sample_of) {
-    HWY_ALIGN float threshold[kLanes] = {};
-    const Mask open = hn::And(ask, hn::And(hn::Gt(alpha, hn::Zero(f)), hn::Lt(alpha, hn::Set(f, 1.0f))));
-    for (std::uint64_t m = bits_of(f, open); m != 0; m &= m - 1) {
-        const int k = std::countr_zero(m);
+    // Thresholds are in [0, 1): 0 and 1 need no asking.
+    const Mask some = hn::Gt(alpha, hn::Zero(f)), open = hn::And(some, hn::Lt(alpha, hn::Set(f, 1.0f)));
+    if (hn::AllFalse(f, hn::And(ask, open))) return hn::And(ask, some);
+    const U u;
+    HWY_ALIGN std::uint32_t px[kLanes], py[kLanes], index[kLanes];
+    for (int k = 0; k < kWidth; ++k) {
         const SampleOfPixel s = sample_of(k);
-        threshold[k] = opacity_threshold(triangle, s.px, s.py, s.index, work.samples.spp());
+        px[k] = static_cast<std::uint32_t>(s.px);
+        py[k] = static_cast<std::uint32_t>(s.py);
+        index[k] = static_cast<std::uint32_t>(s.index);
     }
-    return hn::And(ask, hn::Gt(alpha, hn::Load(f, threshold)));  // thresholds are in [0, 1): 0 and 1 need no asking
+    const Vec threshold = opacity_thresholds(f, triangle, hn::Load(u, px), hn::Load(u, py), hn::Load(u, index),
+                                             static_cast<std::uint32_t>(work.samples.spp()));
+    return hn::And(ask, hn::Gt(alpha, threshold));
 }
 
 // Glass is rare: lane by lane.

@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "base/parallel.h"
+#include "frame/cut_triangles.h"
 
 namespace pentaprism {
 namespace {
@@ -17,6 +18,7 @@ constexpr int kMaxSegments = 32;
 struct Moment {
     Pose pose;
     glm::dmat4 to_camera;
+    View view;
 };
 
 // Moments by shutter time, made when first asked for. Times are multiples of 1/128, exact in double.
@@ -32,6 +34,7 @@ class Moments {
             moment = std::make_unique<Moment>();
             moment->pose = evaluate(scene_, animations_, view_.shutter.at(t));
             moment->to_camera = world_to_camera(view_, moment->pose);
+            moment->view = view_at(scene_, view_, moment->pose);
         }
         return *moment;
     }
@@ -44,29 +47,42 @@ class Moments {
     std::map<double, std::unique_ptr<Moment>> moments_;
 };
 
-using ClipPoints = std::vector<glm::dvec4>;  // x, y, w, z of each vertex
+// One vertex.
+struct ClipPoint {
+    glm::dvec4 p;  // x, y, w, z
+    double c;
+    bool operator==(const ClipPoint&) const = default;
+};
+using ClipPoints = std::vector<ClipPoint>;
 
-ClipPoints clip_points(const Scene& scene, const View& view, const Placement& placement, const Moment& moment) {
+ClipPoints clip_points(const Scene& scene, const Placement& placement, const Moment& moment) {
     std::vector<glm::dvec3> positions(scene.meshes[placement.mesh].primitives[placement.primitive].positions.size());
     pose_positions(scene, moment.pose, placement, positions);
     ClipPoints points(positions.size());
-    for (std::size_t i = 0; i < positions.size(); ++i)
-        points[i] = to_raster_clip(view, glm::dvec3(moment.to_camera * glm::dvec4(positions[i], 1.0)));
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const glm::dvec4 p = to_raster_clip(moment.view, glm::dvec3(moment.to_camera * glm::dvec4(positions[i], 1.0)));
+        points[i] = {p, moment.view.coc(p.x, p.y, p.w)};
+    }
     return points;
 }
 
 // Largest distance in pixels between `truth` and the point at fraction s of the straight segment from p to q, over the
-// vertices that are in front of the camera and not far outside the picture.
+// vertices that are in front of the camera and not far outside the picture. Where circles of confusion do not follow
+// from depth alone, also between their radii.
 double path_error(const View& view, const ClipPoints& p, const ClipPoints& q, const ClipPoints& truth, double s) {
     const double reach = 2.0 * std::max(view.width, view.height), near = view.w_near();
+    const bool blur_bends = !view.has_straight_sight();
     double worst = 0.0;
     for (std::size_t i = 0; i < truth.size(); ++i) {
-        const glm::dvec4 straight = p[i] + s * (q[i] - p[i]);
-        if (!(truth[i].z >= near && straight.z >= near)) continue;
-        const double x = truth[i].x / truth[i].z, y = truth[i].y / truth[i].z;
+        const glm::dvec4 &true_p = truth[i].p, straight = p[i].p + s * (q[i].p - p[i].p);
+        if (!(true_p.z >= near && straight.z >= near)) continue;
+        const double x = true_p.x / true_p.z, y = true_p.y / true_p.z;
         if (!(std::abs(x) < reach && std::abs(y) < reach)) continue;
         const double dx = straight.x / straight.z - x, dy = straight.y / straight.z - y;
         worst = std::max(worst, dx * dx + dy * dy);
+        if (!blur_bends) continue;
+        const double dr = (p[i].c + s * (q[i].c - p[i].c)) / straight.z - truth[i].c / true_p.z;
+        worst = std::max(worst, dr * dr);
     }
     return std::sqrt(worst);
 }
@@ -79,7 +95,7 @@ class Path {
 
     const ClipPoints& at(double t) {
         auto& points = points_[t];
-        if (points.empty()) points = clip_points(scene_, view_, placement_, moments_.at(t));
+        if (points.empty()) points = clip_points(scene_, placement_, moments_.at(t));
         return points;
     }
 
@@ -116,18 +132,47 @@ struct PosedPart {
     Part part;
     std::vector<glm::vec4> points;
     std::vector<float> depths;
+    CutTriangles cut;  // empty: all triangles are whole
 };
+
+// As if the corners 1 and 2 of the whole triangle and of the piece had changed their names.
+void mirror(Piece& piece) {
+    std::swap(piece.corner[1], piece.corner[2]);
+    for (glm::vec2& corner : piece.corner) std::swap(corner.x, corner.y);
+}
 
 void append_knot(const View& view, const ClipPoints& knot, PosedPart& posed) {
     // All knots at once: growing copies.
     const std::size_t all = knot.size() * (posed.part.moves ? posed.part.segments + 1 : 1);
     posed.points.reserve(all);
     if (!view.perspective) posed.depths.reserve(all);
-    for (const glm::dvec4& p : knot) {
-        const double c = view.lens.a + view.lens.b * p.w;
+    for (const auto& [p, c] : knot) {
         posed.points.emplace_back(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z),
                                   static_cast<float>(c));
         if (!view.perspective) posed.depths.push_back(static_cast<float>(p.w));
+    }
+}
+
+// Cuts the triangles of a part that is posed.
+void cut_part(const Primitive& primitive, Moments& moments, PosedPart& posed) {
+    Part& part = posed.part;
+    const std::size_t n = part.vertex_count, knots = part.moves ? part.segments + 1 : 1;
+    std::vector<KnotPoints> cut(knots);
+    for (std::size_t k = 0; k < knots; ++k) {
+        cut[k].view = moments.at(part.moves ? static_cast<double>(k) / part.segments : 0.0).view;
+        cut[k].points.assign(posed.points.begin() + k * n, posed.points.begin() + (k + 1) * n);
+        if (!posed.depths.empty())
+            cut[k].depths.assign(posed.depths.begin() + k * n, posed.depths.begin() + (k + 1) * n);
+    }
+    posed.cut = cut_triangles(primitive.indices, cut);
+    part.midpoints = std::move(posed.cut.midpoints);
+    part.vertex_count = static_cast<std::uint32_t>(cut[0].points.size());
+    part.triangle_count = static_cast<std::uint32_t>(posed.cut.pieces.size());
+    posed.points.clear();
+    posed.depths.clear();
+    for (const KnotPoints& knot : cut) {
+        posed.points.insert(posed.points.end(), knot.points.begin(), knot.points.end());
+        posed.depths.insert(posed.depths.end(), knot.depths.begin(), knot.depths.end());
     }
 }
 
@@ -149,12 +194,10 @@ PosedPart pose_part(const Scene& scene, const View& view, const Placement& place
 
     Path path(scene, view, placement, moments);
     part.moves = shutter_open && part.vertex_count > 0 && !path.stands_still();
-    if (!part.moves) {
-        append_knot(view, path.at(0.0), posed);
-        return posed;
-    }
-    part.segments = settings.motion_segments > 0 ? settings.motion_segments : choose_segments(path);
-    for (int k = 0; k <= part.segments; ++k) append_knot(view, path.at(double(k) / part.segments), posed);
+    if (part.moves) part.segments = settings.motion_segments > 0 ? settings.motion_segments : choose_segments(path);
+    for (int k = 0; k <= (part.moves ? part.segments : 0); ++k)
+        append_knot(view, path.at(double(k) / part.segments), posed);
+    if (!view.lens.pinhole() && !view.lens.straight()) cut_part(primitive, moments, posed);
     return posed;
 }
 
@@ -162,8 +205,25 @@ PosedPart pose_part(const Scene& scene, const View& view, const Placement& place
 
 std::array<std::uint32_t, 3> Frame::vertices(std::uint32_t triangle) const {
     const Part& part = parts[part_of[triangle]];
-    const std::uint32_t* corner = &corners[3 * std::size_t{triangle}];
-    return {corner[0] - part.first_point, corner[1] - part.first_point, corner[2] - part.first_point};
+    if (pieces.empty()) {
+        const std::uint32_t* corner = &corners[3 * std::size_t{triangle}];
+        return {corner[0] - part.first_point, corner[1] - part.first_point, corner[2] - part.first_point};
+    }
+    const Primitive& primitive = scene->meshes[part.placement.mesh].primitives[part.placement.primitive];
+    const std::uint32_t* index = &primitive.indices[3 * std::size_t{pieces[triangle].source}];
+    if (part.mirrored) return {index[0], index[2], index[1]};
+    return {index[0], index[1], index[2]};
+}
+
+std::uint32_t Frame::source(std::uint32_t triangle) const {
+    return pieces.empty() ? triangle - parts[part_of[triangle]].first_triangle : pieces[triangle].source;
+}
+
+glm::vec3 Frame::in_source(std::uint32_t triangle, const glm::vec3& b) const {
+    if (pieces.empty()) return b;
+    const glm::vec2* corner = pieces[triangle].corner;
+    const glm::vec2 p = b.x * corner[0] + b.y * corner[1] + b.z * corner[2];
+    return {1.0f - p.x - p.y, p.x, p.y};
 }
 
 Frame pose_frame(const Scene& scene, const View& view, std::span<const Index> animations,
@@ -193,6 +253,8 @@ Frame pose_frame(const Scene& scene, const View& view, std::span<const Index> an
     if (!view.perspective) frame.depths.resize(points);
     frame.corners.resize(3 * triangles);
     frame.part_of.resize(triangles);
+    if (std::any_of(posed.begin(), posed.end(), [](const PosedPart& p) { return !p.cut.pieces.empty(); }))
+        frame.pieces.resize(triangles);
     frame.parts.reserve(posed.size());
     for (const PosedPart& p : posed) frame.parts.push_back(p.part);
 
@@ -201,11 +263,19 @@ Frame pose_frame(const Scene& scene, const View& view, std::span<const Index> an
         std::copy(posed[i].points.begin(), posed[i].points.end(), frame.points.begin() + part.first_point);
         std::copy(posed[i].depths.begin(), posed[i].depths.end(),
                   frame.depths.begin() + (view.perspective ? 0 : part.first_point));
-        const auto& indices = scene.meshes[part.placement.mesh].primitives[part.placement.primitive].indices;
+        const bool is_cut = !posed[i].cut.pieces.empty();
+        const auto& indices = is_cut ? posed[i].cut.indices
+                                     : scene.meshes[part.placement.mesh].primitives[part.placement.primitive].indices;
+        if (is_cut)
+            std::copy(posed[i].cut.pieces.begin(), posed[i].cut.pieces.end(),
+                      frame.pieces.begin() + part.first_triangle);
         for (std::uint32_t t = 0; t < part.triangle_count; ++t) {
             std::uint32_t* corner = &frame.corners[3 * std::size_t{part.first_triangle + t}];
             for (int k = 0; k < 3; ++k) corner[k] = part.first_point + indices[3 * std::size_t{t} + k];
-            if (part.mirrored) std::swap(corner[1], corner[2]);
+            if (part.mirrored) {
+                std::swap(corner[1], corner[2]);
+                if (is_cut) mirror(frame.pieces[part.first_triangle + t]);
+            }
             frame.part_of[part.first_triangle + t] = static_cast<std::uint32_t>(i);
         }
         posed[i] = {};

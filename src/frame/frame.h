@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <memory>
@@ -30,6 +31,15 @@ struct Part {
     bool mirrored = false;  ///< corners were swapped so that front faces are counter-clockwise again
     AlphaMode alpha_mode = AlphaMode::kOpaque;
     Index material = kNone;  ///< into Scene::materials, or kNone
+    /// The last vertices, which cuts added: each lies in the middle between two earlier ones.
+    std::vector<std::array<std::uint32_t, 2>> midpoints;
+};
+
+/// A triangle that was cut (frame/cut_triangles.h): which of its part's Primitive it is a piece of, and where its
+/// corners lie in that: barycentrics of the second and third corner.
+struct Piece {
+    std::uint32_t source = 0;
+    glm::vec2 corner[3] = {{0.0f, 0.0f}, {1.0f, 0.0f}, {0.0f, 1.0f}};
 };
 
 struct Frame {
@@ -40,14 +50,22 @@ struct Frame {
     std::vector<float> depths;                 ///< orthographic cameras only: z of each point (else z = w)
     std::vector<std::uint32_t> corners;        ///< 3 for each triangle: into `points`, at knot 0
     std::vector<std::uint32_t> part_of;        ///< for each triangle: into `parts`
+    std::vector<Piece> pieces;                 ///< for each triangle; empty: none is cut
     std::vector<Index> animations;             ///< clips that play
     Pose middle;                               ///< the scene at mid-shutter, the shading time
     std::shared_ptr<const Textures> textures;  ///< set by who renders, once for all frames; null: factors alone count
 
     std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(part_of.size()); }
 
-    /// The triangle's corners in its Primitive: which vertices carry its attributes (already swapped if mirrored).
+    /// The corners of the triangle in its Primitive (of a piece: of all it is cut from): which vertices carry its
+    /// attributes (already swapped if mirrored).
     std::array<std::uint32_t, 3> vertices(std::uint32_t triangle) const;
+
+    /// The number in its Primitive of the triangle, or of what it is a piece of.
+    std::uint32_t source(std::uint32_t triangle) const;
+
+    /// From barycentrics of the triangle to those of vertices().
+    glm::vec3 in_source(std::uint32_t triangle, const glm::vec3& barycentrics) const;
 };
 
 /// Poses the scene. Knots are uniform; `settings.motion_segments` of them or, if 0, as many (a power of two up to 32

@@ -37,30 +37,47 @@ std::uint32_t permuted(std::uint32_t i, std::uint32_t n, std::uint32_t seed) {
     return i;
 }
 
-float vertex_alpha(const Primitive& primitive, const std::array<std::uint32_t, 3>& vertices, const float b[3]) {
-    if (primitive.colors.empty()) return 1.0f;
-    return b[0] * primitive.colors[vertices[0]].w + b[1] * primitive.colors[vertices[1]].w +
-           b[2] * primitive.colors[vertices[2]].w;
+// A triangle's corners in its Primitive.
+struct Corners {
+    const Frame& frame;
+    std::uint32_t triangle;
+    std::array<std::uint32_t, 3> vertices;
+
+    // What corner k has of an attribute; of a piece, a mix of what all of it has.
+    template <class T>
+    T at(int k, const std::vector<T>& values) const {
+        if (frame.pieces.empty()) return values[vertices[k]];
+        const glm::vec3 b =
+            frame.in_source(triangle, {k == 0 ? 1.0f : 0.0f, k == 1 ? 1.0f : 0.0f, k == 2 ? 1.0f : 0.0f});
+        return b.x * values[vertices[0]] + b.y * values[vertices[1]] + b.z * values[vertices[2]];
+    }
+    glm::vec2 mixed(const std::vector<glm::vec2>& values, const float b[3]) const {
+        return b[0] * at(0, values) + b[1] * at(1, values) + b[2] * at(2, values);
+    }
+};
+
+float vertex_alpha(const Primitive& primitive, const Corners& corners, const float b[3]) {
+    const std::vector<glm::vec4>& colors = primitive.colors;
+    if (colors.empty()) return 1.0f;
+    return b[0] * corners.at(0, colors).w + b[1] * corners.at(1, colors).w + b[2] * corners.at(2, colors).w;
 }
 
-float texture_alpha(const Frame& frame, const Primitive& primitive, const TextureRef& ref,
-                    const std::array<std::uint32_t, 3>& vertices, const float b[3]) {
+float texture_alpha(const Frame& frame, const Primitive& primitive, const TextureRef& ref, const Corners& corners,
+                    const float b[3]) {
     const Pyramid* pyramid = frame.textures ? frame.textures->color(ref) : nullptr;
     if (!pyramid) return 1.0f;
     const std::vector<glm::vec2>& uv = primitive.texcoords[ref.texcoord == 1 ? 1 : 0];
     if (uv.empty()) return pyramid->alpha(ref, transform_uv(ref, {0.0f, 0.0f}));
-    return pyramid->alpha(ref,
-                          transform_uv(ref, b[0] * uv[vertices[0]] + b[1] * uv[vertices[1]] + b[2] * uv[vertices[2]]));
+    return pyramid->alpha(ref, transform_uv(ref, corners.mixed(uv, b)));
 }
 
-float transmission(const Frame& frame, const Material& material, const Primitive& primitive,
-                   const std::array<std::uint32_t, 3>& vertices, const float b[3]) {
+float transmission(const Frame& frame, const Material& material, const Primitive& primitive, const Corners& corners,
+                   const float b[3]) {
     const TextureRef& ref = material.transmission_texture;
     const Pyramid* pyramid = frame.textures ? frame.textures->data(ref) : nullptr;
     const std::vector<glm::vec2>& uv = primitive.texcoords[ref.texcoord == 1 ? 1 : 0];
     if (!pyramid || uv.empty()) return material.transmission;
-    const glm::vec2 at = b[0] * uv[vertices[0]] + b[1] * uv[vertices[1]] + b[2] * uv[vertices[2]];
-    return material.transmission * pyramid->sample(ref, transform_uv(ref, at), 0.0f).x;
+    return material.transmission * pyramid->sample(ref, transform_uv(ref, corners.mixed(uv, b)), 0.0f).x;
 }
 
 }  // namespace
@@ -85,12 +102,12 @@ OpacityTerms opacity_terms(const Frame& frame, std::uint32_t triangle) {
     terms.glass = material.transmission > 0.0f;
     if (part.alpha_mode == AlphaMode::kOpaque || terms.glass) return terms;
     const Primitive& primitive = frame.scene->meshes[part.placement.mesh].primitives[part.placement.primitive];
-    const std::array<std::uint32_t, 3> vertices = frame.vertices(triangle);
+    const Corners corners{frame, triangle, frame.vertices(triangle)};
     terms.mode = part.alpha_mode;
     terms.cutoff = material.alpha_cutoff;
     terms.factor = material.base_color.w;
     terms.colored = !primitive.colors.empty();
-    for (int k = 0; terms.colored && k < 3; ++k) terms.color[k] = primitive.colors[vertices[k]].w;
+    for (int k = 0; terms.colored && k < 3; ++k) terms.color[k] = corners.at(k, primitive.colors).w;
     const TextureRef& ref = material.base_color_texture;
     const Pyramid* pyramid = frame.textures ? frame.textures->color(ref) : nullptr;
     if (!pyramid) return terms;
@@ -101,7 +118,7 @@ OpacityTerms opacity_terms(const Frame& frame, std::uint32_t triangle) {
     }
     terms.texture = pyramid;
     terms.ref = &ref;
-    for (int k = 0; k < 3; ++k) terms.uv[k] = uv[vertices[k]];
+    for (int k = 0; k < 3; ++k) terms.uv[k] = corners.at(k, uv);
     return terms;
 }
 
@@ -112,7 +129,7 @@ OpacityClass opacity_class(const Frame& frame, std::uint32_t triangle) {
     if (part.alpha_mode == AlphaMode::kOpaque) return OpacityClass::kSolid;
     if (!frame.textures || glass) return OpacityClass::kMixed;
     const OpacityClass* classes = frame.textures->opacity_classes(part.placement.mesh, part.placement.primitive);
-    return classes ? classes[triangle - part.first_triangle] : OpacityClass::kMixed;
+    return classes ? classes[frame.source(triangle)] : OpacityClass::kMixed;
 }
 
 bool is_opaque_at(const Frame& frame, std::uint32_t triangle, const float barycentrics[3], int px, int py,
@@ -122,13 +139,13 @@ bool is_opaque_at(const Frame& frame, std::uint32_t triangle, const float baryce
     const Part& part = frame.parts[frame.part_of[triangle]];
     const Material& material = frame.scene->materials[part.material];
     const Primitive& primitive = frame.scene->meshes[part.placement.mesh].primitives[part.placement.primitive];
-    const std::array<std::uint32_t, 3> vertices = frame.vertices(triangle);
-    const float alpha = material.base_color.w * vertex_alpha(primitive, vertices, barycentrics) *
-                        texture_alpha(frame, primitive, material.base_color_texture, vertices, barycentrics);
+    const Corners corners{frame, triangle, frame.vertices(triangle)};
+    const float alpha = material.base_color.w * vertex_alpha(primitive, corners, barycentrics) *
+                        texture_alpha(frame, primitive, material.base_color_texture, corners, barycentrics);
     if (part.alpha_mode == AlphaMode::kMask && !(alpha >= material.alpha_cutoff)) return false;
     float opacity = material.alpha_mode == AlphaMode::kBlend ? alpha : 1.0f;
     if (material.transmission > 0.0f)
-        opacity *= 1.0f - see_through(transmission(frame, material, primitive, vertices, barycentrics));
+        opacity *= 1.0f - see_through(transmission(frame, material, primitive, corners, barycentrics));
     else if (part.alpha_mode == AlphaMode::kMask)
         return true;
     return opacity > opacity_threshold(triangle, px, py, sample_index, spp);

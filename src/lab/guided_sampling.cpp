@@ -41,6 +41,7 @@ class GuidedSampler::Draw {
   public:
     Draw(const Lens& lens, const GuidedPixel& pixel, std::uint32_t seed) : lens_(lens), pixel_(pixel) {
         lens_.blades = 0;
+        lens_.image.reset();
         state_ = mix(
             mix(mix(static_cast<std::uint32_t>(pixel.px) + 0x68bc21ebu) + static_cast<std::uint32_t>(pixel.py)) + seed);
     }

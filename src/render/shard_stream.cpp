@@ -13,7 +13,7 @@
 namespace pentaprism {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Shard, index, count)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StreamHead::Camera, perspective, lens_ratio, blades, even_shutter)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(StreamHead::Camera, perspective, lens_ratio, thin_lens, round, even_shutter)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FileMetadata, settings_json, exposure_seconds, software)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FrameInfo::Knot, time, world_to_camera)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FrameInfo, width, height, x0, y0, x1, y1, frame, fps, shutter_open, shutter_close,
@@ -91,7 +91,10 @@ std::string difference(const StreamHead& a, const StreamHead& b) {
 StreamHead head_of(const Shard& shard, const FrameInfo& info, const View& view, const RenderSettings& settings,
                    const FileMetadata& metadata) {
     const bool even = settings.shutter.curve.empty() && view.shutter.rolling == RollingShutter::kNone;
-    return {shard, info, settings.image, metadata, {view.perspective, view.lens.ratio, view.lens.blades, even}};
+    const Lens& lens = view.lens;
+    const bool thin = lens.straight() && lens.tilt == glm::dvec2(0.0);
+    const bool round = lens.blades == 0 && !lens.image && lens.cats_eye == 0.0;
+    return {shard, info, settings.image, metadata, {view.perspective, lens.ratio, thin, round, even}};
 }
 
 TileOutput::TileOutput(StreamKind kind, const StreamHead& head, ByteSink& out) : out_(out) {

@@ -42,13 +42,18 @@ class Lensing {
         if (!(info.lens_radius > 0.0))
             refuse("the samples were rendered through a pinhole: there is no focus to change");
         if (!head.camera.perspective) refuse("an orthographic camera's rays belong to its focus");
+        if (!head.camera.thin_lens)
+            refuse(
+                "the samples were rendered with --focus-range, --max-foreground-blur, --tilt or --swing: their rays "
+                "belong to that lens");
         if (wanted.fstop) {
             if (!(info.fstop > 0.0 && *wanted.fstop >= info.fstop * (1.0 - kRounding)))
                 refuse(
                     fmt::format("--fstop {}: the samples were rendered at {}; a larger aperture has rays that they "
                                 "lack",
                                 *wanted.fstop, info.fstop));
-            if (head.camera.blades > 0) refuse("--fstop: only a round aperture becomes smaller, not one with blades");
+            if (!head.camera.round)
+                refuse("--fstop: only a round aperture becomes smaller, not one with blades, a picture or a cat's eye");
             const double radius = std::min(1.0, info.fstop / *wanted.fstop);
             if (radius < 1.0) radius2_ = radius * radius;
         }

@@ -1,6 +1,7 @@
 #include "render/visibility.h"
 
 #include <algorithm>
+#include <pentaprism/error.h>
 
 namespace pentaprism {
 namespace {
@@ -26,8 +27,14 @@ Grouping grouping_for(const Frame& frame) {
 }
 
 SampleTable make_samples(const Frame& frame, int spp, const MethodSettings& method) {
+    if (frame.view.lens.cats_eye > 0.0 && pattern_for(method.visibility) != SamplePattern::kFree)
+        throw Error(ErrorKind::kUsage,
+                    "the camera has a cat's eye, but with --visibility accumulation and interleaved all places share "
+                    "their lens points; give --cats-eye 0");
     return SampleTable(spp, method.seed, frame.view.lens, grouping_for(frame), pattern_for(method.visibility),
-                       SampleTimes(frame.view.shutter, frame.view.width, frame.view.height));
+                       SampleTimes(frame.view.shutter, frame.view.width, frame.view.height),
+                       CatsEye(frame.view.lens.cats_eye, frame.view.width, frame.view.height, frame.view.lens.ratio),
+                       method.sampler);
 }
 
 std::vector<Tile> tiles_over(const PixelRect& limits, int size) {
@@ -45,7 +52,9 @@ Visibility::Visibility(const Frame& frame, const SampleTable& samples, const Met
       method_(method.visibility),
       by_pixel_(grouping_for(frame) == Grouping::kStill && !samples.by_pixel(0, 0).x.empty()),
       culling_(method.culling == "auto" ? Culling() : parse_culling(method.culling)) {
-    if (method_ == VisibilityMethod::kRaytrace)
+    if (method.backend == Backend::kGl)
+        rasterizer_ = make_gl_rasterizer(frame, samples, method.culling, limits);
+    else if (method_ == VisibilityMethod::kRaytrace)
         tracer_ = make_tracer(frame, samples);
     else
         bins_.emplace(frame, method.tile_size, limits);
@@ -55,6 +64,7 @@ Visibility::Visibility(const Frame& frame, const SampleTable& samples, const Met
 void Visibility::cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map) const {
     hits.reset(samples_.slots());
     if (tracer_) return tracer_->trace(tile, hits);
+    if (rasterizer_) return rasterizer_->cover(tile, hits, counts, map);
     const TileWork work{frame_, samples_, bins_->triangles(), bins_->tile(tile.x0, tile.y0), tile, map};
     if (method_ == VisibilityMethod::kMicropolygon)
         cover_micropolygons(work, hits, counts);

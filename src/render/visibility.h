@@ -8,6 +8,7 @@
 #include "bin/bins.h"
 #include "cover/cover.h"
 #include "frame/frame.h"
+#include "gl/rasterizer.h"
 #include "sample/sample_table.h"
 #include "trace/tracer.h"
 
@@ -17,7 +18,7 @@ class Visibility {
   public:
     /// Bins the frame, or builds the tracer. `limits`: the pixels that will be asked for, within the picture. `frame`
     /// and `samples`, of make_samples() for the same method, must outlive this. Throws Error(kUsage) for a culling test
-    /// that does not exist, Error(kBackend) for a tracer that is not there.
+    /// that does not exist, Error(kBackend) for a tracer or a backend that is not there.
     Visibility(const Frame& frame, const SampleTable& samples, const MethodSettings& method, const PixelRect& limits);
 
     /// tiles_over() the limits.
@@ -27,7 +28,7 @@ class Visibility {
     /// which tiles write different pixels.
     void cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map = nullptr) const;
 
-    /// 0 for a tracer.
+    /// 0 for a tracer and for a backend that bins on its own.
     std::int64_t binned_triangles() const { return bins_ ? static_cast<std::int64_t>(bins_->triangles().size()) : 0; }
 
   private:
@@ -38,6 +39,7 @@ class Visibility {
     Culling culling_;  ///< empty: the fast path
     std::optional<Bins> bins_;
     std::unique_ptr<const Tracer> tracer_;
+    std::unique_ptr<const Rasterizer> rasterizer_;
     std::vector<Tile> tiles_;
 };
 

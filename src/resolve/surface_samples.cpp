@@ -58,6 +58,7 @@ SurfaceSample SurfaceSamples::at(std::uint32_t triangle, float depth, const Loca
         w += s.barycentrics[i] * (e.local.qw[i] + tau * e.local.dw[i]);
     }
     s.coc = w > 0.0f ? c / w : 0.0f;
+    s.barycentrics = frame.in_source(triangle, s.barycentrics);
     return s;
 }
 

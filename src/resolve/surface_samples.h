@@ -17,8 +17,8 @@ struct SurfaceSample {
     std::uint32_t triangle = 0;
     const Part* part = nullptr;
     const ShadedPart* shaded = nullptr;
-    std::array<std::uint32_t, 3> vertices{};  ///< of the Primitive
-    glm::vec3 barycentrics{0.0f};             ///< inside the triangle, sum 1
+    std::array<std::uint32_t, 3> vertices{};  ///< of the Primitive: Frame::vertices()
+    glm::vec3 barycentrics{0.0f};             ///< among these, sum 1
     bool front = true;
     float depth = 0, t = 0;
     float coc = 0;  ///< signed radius in pixels

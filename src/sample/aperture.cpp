@@ -59,15 +59,22 @@ glm::dvec2 polygon_point(Polar polar, int blades, double rotation, double roundn
     return radius * ((1.0 - along) * corner0 + along * corner1);
 }
 
+glm::dvec2 on_lens(const Lens& lens, const glm::dvec2& uv) {
+    return lens.on_tilted_plane({std::clamp(uv.x, -1.0, 1.0), std::clamp(uv.y, -1.0, 1.0) * lens.ratio});
+}
+
 }  // namespace
 
 glm::dvec2 aperture_point(const Lens& lens, double p, double q) {
-    const Polar polar = concentric(p, q);
     const double rotation = lens.rotation_deg * glm::pi<double>() / 180.0;
-    glm::dvec2 uv = lens.blades >= 3 ? polygon_point(polar, lens.blades, rotation, lens.roundness)
-                                     : polar.radius * glm::dvec2(std::cos(polar.angle), std::sin(polar.angle));
-    uv = glm::dvec2(std::clamp(uv.x, -1.0, 1.0), std::clamp(uv.y, -1.0, 1.0));
-    return {uv.x, uv.y * lens.ratio};
+    if (lens.image) {
+        const glm::dvec2 uv = lens.image->point(p, q);
+        const double c = std::cos(rotation), s = std::sin(rotation);
+        return on_lens(lens, {c * uv.x - s * uv.y, s * uv.x + c * uv.y});
+    }
+    const Polar polar = concentric(p, q);
+    return on_lens(lens, lens.blades >= 3 ? polygon_point(polar, lens.blades, rotation, lens.roundness)
+                                          : polar.radius * glm::dvec2(std::cos(polar.angle), std::sin(polar.angle)));
 }
 
 }  // namespace pentaprism

@@ -25,14 +25,6 @@ std::uint8_t digit(std::uint32_t index, int r, std::uint8_t alpha) {
 constexpr std::uint8_t kSwapped[4] = {0, 2, 1, 3};  // (high, low) -> (low, high)
 constexpr std::uint8_t kSummed[4] = {0, 2, 3, 1};   // (high, low) -> (high + low, high)
 
-std::uint32_t reverse_bits(std::uint32_t x) {
-    x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
-    x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
-    x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
-    x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
-    return (x >> 16) | (x << 16);
-}
-
 }  // namespace
 
 std::array<std::uint32_t, 4> net_point(std::uint32_t index) {
@@ -44,6 +36,14 @@ std::array<std::uint32_t, 4> net_point(std::uint32_t index) {
             point[dimension] |= static_cast<std::uint32_t>(relabel[digit(index, r, kAlpha[dimension])]) << (30 - 2 * r);
     }
     return point;
+}
+
+std::uint32_t reverse_bits(std::uint32_t x) {
+    x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
+    x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
+    x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
+    x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
+    return (x >> 16) | (x << 16);
 }
 
 std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {

@@ -17,6 +17,8 @@ std::array<std::uint32_t, 4> net_point(std::uint32_t index);
 /// In base 2, hence also a nested scrambling in base 4.
 std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed);
 
+std::uint32_t reverse_bits(std::uint32_t x);
+
 /// A well mixed hash of one word; chain calls for several.
 std::uint32_t mix(std::uint32_t x);
 

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "sample/aperture.h"
 #include "sample/net.h"
+#include "sample/pixel_pattern.h"
 
 namespace pentaprism {
 namespace {
@@ -16,61 +17,6 @@ namespace {
 int period_for(int spp) {
     return spp <= 16 ? 128 : spp <= 64 ? 64 : 32;
 }
-
-// The sixteen pixels of a block share the first base-4 digit of u, v and t of each index, so that a vector is close in
-// lens and time; their second digits are a net of their own over the block: with columns and rows as elements of GF(4),
-// each line of pixels and each pair of dimensions sees all digits once.
-struct LaneDigits {
-    std::uint32_t u, v, t;
-};
-LaneDigits lane_digits(int lane) {
-    constexpr std::uint32_t kTimesW[4] = {0, 2, 3, 1}, kTimesW2[4] = {0, 3, 1, 2};
-    const std::uint32_t column = lane % kBlockSize, row = lane / kBlockSize;
-    return {column ^ kTimesW[row], column ^ kTimesW2[row], column ^ row};
-}
-
-// 32-bit coordinates of one sample before the map to the lens.
-struct RawSample {
-    std::uint32_t x, y, u, v;
-    std::uint32_t stratum_t;  // of spp
-    std::uint32_t jitter_t;   // within it, 24 bits
-};
-
-// All samples of one block: pure functions of the block's place, the seed, the lane and the index.
-class BlockPattern {
-  public:
-    BlockPattern(int spp, std::uint32_t seed, int bx, int by) : spp_(spp) {
-        const std::uint32_t place =
-            mix(static_cast<std::uint32_t>(bx) * 0x9e3779b9u + mix(static_cast<std::uint32_t>(by) + 1u));
-        block_ = mix(place + seed * 0x85ebca6bu + 0x1b873593u);
-    }
-
-    // First digits of u and v: the same for all lanes.
-    std::uint32_t base_u(std::uint32_t index) const { return owen_scramble(net_point(index)[2], mix(block_ + 3u)); }
-    std::uint32_t base_v(std::uint32_t index) const { return owen_scramble(net_point(index)[3], mix(block_ + 4u)); }
-
-    RawSample sample(int lane, std::uint32_t index) const {
-        const auto point = net_point(index);
-        const std::uint32_t pixel = mix(block_ + 0x9e3779b9u * (lane + 1u));
-        const LaneDigits digits = lane_digits(lane);
-        RawSample raw;
-        raw.x = owen_scramble(point[0], mix(pixel + 1u));
-        raw.y = owen_scramble(point[1], mix(pixel + 2u));
-        raw.u = owen_scramble(point[2], mix(block_ + 3u)) ^ shift(digits.u, mix(pixel + 3u));
-        raw.v = owen_scramble(point[3], mix(block_ + 4u)) ^ shift(digits.v, mix(pixel + 4u));
-        const std::uint32_t low_digit = (digits.t ^ mix(block_ + 6u)) & 3u;
-        raw.stratum_t = spp_ % 4 == 0 ? index ^ low_digit : index;
-        raw.jitter_t = mix(pixel + 5u + 0x9e3779b9u * index) >> 8;
-        return raw;
-    }
-
-  private:
-    // A digital shift that leaves the first digit alone, sets the second to `digit` and is random below.
-    static std::uint32_t shift(std::uint32_t digit, std::uint32_t random) { return (digit << 28) | (random >> 4); }
-
-    int spp_;
-    std::uint32_t block_;
-};
 
 // `strata`: intervals of the shutter, one of which is raw.stratum_t.
 SamplePoint to_sample(const RawSample& raw, int strata, const Lens& lens, const SampleTimes& times) {
@@ -98,20 +44,28 @@ LocalOffset local_offset(int block, int lane) {
             static_cast<float>(half - block / kCellBlocks * kBlockSize - lane / kBlockSize)};
 }
 
-// Slot of each index in lens order: groups of sixteen consecutive indices hold each of the 4x4 lens cells once, so a
-// whole group is laid out by cell; the remainder of spp / 16 in ascending order of its cells.
-std::vector<std::uint16_t> lens_order(const BlockPattern& pattern, int spp) {
-    std::vector<std::uint16_t> slot_of_index(spp);
-    for (int first = 0; first < spp; first += 16) {
-        const int last = std::min(first + 16, spp);
-        std::vector<std::pair<std::uint32_t, int>> cells;
-        for (int i = first; i < last; ++i)
-            cells.emplace_back((pattern.base_v(i) >> 30) * 4 + (pattern.base_u(i) >> 30), i);
-        std::sort(cells.begin(), cells.end());
-        for (int rank = 0; rank < last - first; ++rank)
-            slot_of_index[cells[rank].second] = static_cast<std::uint16_t>(first + rank);
+// A sample of a pattern without strata of ours: its time is one of 2^24 in a single interval.
+RawSample pattern_sample(Sampler sampler, int px, int py, int index, int spp, std::uint32_t seed) {
+    const auto p = pattern_point(sampler, px, py, index, spp, seed);
+    return {p.x, p.y, p.u, p.v, 0, p.t >> 8};
+}
+
+// Slots of the samples of one pixel of such a pattern, so that those of a vector are near each other where they blur:
+// by lens cell, of both or one coordinate after the other, or by time.
+void order_by_blur(std::span<const RawSample> samples, Grouping grouping, std::span<std::uint16_t> slot_of_index) {
+    if (grouping == Grouping::kStill) {
+        for (std::size_t i = 0; i < samples.size(); ++i) slot_of_index[i] = static_cast<std::uint16_t>(i);
+        return;
     }
-    return slot_of_index;
+    std::vector<std::pair<std::uint64_t, std::uint16_t>> keys;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const RawSample& s = samples[i];
+        const std::uint64_t cell = grouping == Grouping::kMotion ? 0 : (s.v >> 30) * 4 + (s.u >> 30);
+        keys.emplace_back(cell << 32 | s.jitter_t, static_cast<std::uint16_t>(i));
+    }
+    std::sort(keys.begin(), keys.end());
+    for (std::size_t slot = 0; slot < keys.size(); ++slot)
+        slot_of_index[keys[slot].second] = static_cast<std::uint16_t>(slot);
 }
 
 // Which stratum a vector belongs to: lens cell and quarter of the shutter, whichever of them the grouping keeps apart.
@@ -128,6 +82,15 @@ int stratum_of(Grouping grouping, int spp, std::uint32_t base_u, std::uint32_t b
             return static_cast<int>((index & ~3u) * 4 / spp) * 16 + lens_cell;
     }
     return 0;
+}
+
+// Place in the period of a lane of a block of a cell.
+struct PixelPlace {
+    int x, y;
+};
+PixelPlace pixel_place(int cell, int cells, int block, int lane) {
+    return {cell % cells * kCellSize + block % kCellBlocks * kBlockSize + lane % kBlockSize,
+            cell / cells * kCellSize + block / kCellBlocks * kBlockSize + lane / kBlockSize};
 }
 
 constexpr int kMaxStrata = 64;
@@ -161,13 +124,14 @@ void extend(Domain& domain, const Domain& other) {
 }  // namespace
 
 SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping wanted, SamplePattern pattern,
-                         SampleTimes times)
+                         SampleTimes times, CatsEye eye, Sampler sampler)
     : spp_(spp),
       period_(period_for(spp)),
       seed_(seed),
       grouping_(pattern == SamplePattern::kFree ? wanted : Grouping::kStill),
       pattern_(pattern),
-      times_(std::move(times)) {
+      times_(std::move(times)),
+      eye_(std::move(eye)) {
     const Grouping grouping = grouping_;
     std::optional<SharedTriples> shared;
     if (pattern != SamplePattern::kFree) shared.emplace(pattern, spp, seed);
@@ -176,6 +140,9 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
     vectors_.resize(blocks * spp);
     indices_.resize(blocks * spp * kLanes);
     slots_.resize(blocks * spp * kLanes);
+    const int strata_count = sampler == Sampler::kStratified ? stratum_count(grouping, spp)
+                             : grouping == Grouping::kStill  ? 1
+                                                             : std::min(spp, kMaxStrata);
     std::vector<std::uint8_t> stratum(blocks * spp);
     std::vector<std::array<Domain, kMaxStrata>> domains(blocks);
 
@@ -184,41 +151,54 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
         const BlockPattern block_pattern(spp, seed, cell % cells * kCellBlocks + in_cell % kCellBlocks,
                                          cell / cells * kCellBlocks + in_cell / kCellBlocks);
         domains[b].fill(kEmptyDomain);
+        const auto store = [&](int lane, int index, const SamplePoint& sample, int slot, int s) {
+            SampleVector& vector = vectors_[b * spp + slot];
+            const LocalOffset place = local_offset(in_cell, lane);
+            vector.x[lane] = place.x + sample.x;
+            vector.y[lane] = place.y - sample.y;
+            vector.u[lane] = sample.u;
+            vector.v[lane] = sample.v;
+            vector.t[lane] = sample.t;
+            indices_[(b * spp + slot) * kLanes + lane] = static_cast<std::uint16_t>(index);
+            slots_[(b * kLanes + lane) * spp + index] = static_cast<std::uint16_t>(slot);
+            stratum[b * spp + slot] = static_cast<std::uint8_t>(s);
+            extend(domains[b][s], {sample.u, sample.u, sample.v, sample.v, sample.t, sample.t});
+        };
+        if (sampler != Sampler::kStratified && !shared) {
+            std::vector<RawSample> raw(spp);
+            std::vector<std::uint16_t> slots(spp);
+            for (int lane = 0; lane < kLanes; ++lane) {
+                const PixelPlace pixel = pixel_place(cell, cells, in_cell, lane);
+                for (int index = 0; index < spp; ++index)
+                    raw[index] = pattern_sample(sampler, pixel.x, pixel.y, index, spp, seed);
+                order_by_blur(raw, grouping, slots);
+                for (int index = 0; index < spp; ++index)
+                    store(lane, index, to_sample(raw[index], 1, lens, times_), slots[index],
+                          slots[index] * strata_count / spp);
+            }
+            return;
+        }
         const bool by_lens = grouping == Grouping::kDefocus || grouping == Grouping::kBoth;
-        const std::vector<std::uint16_t> order =
-            by_lens ? lens_order(block_pattern, spp) : std::vector<std::uint16_t>();
+        const std::vector<std::uint16_t> order = by_lens ? block_pattern.lens_order() : std::vector<std::uint16_t>();
         for (int index = 0; index < spp; ++index) {
             const std::uint32_t base_u = block_pattern.base_u(index), base_v = block_pattern.base_v(index);
             for (int lane = 0; lane < kLanes; ++lane) {
                 RawSample raw = block_pattern.sample(lane, index);
                 if (shared) {
-                    const int column = in_cell % kCellBlocks * kBlockSize + lane % kBlockSize;
-                    const int row = in_cell / kCellBlocks * kBlockSize + lane / kBlockSize;
-                    const RawTriple triple = shared->triple(
-                        shared->triple_of(cell % cells * kCellSize + column, cell / cells * kCellSize + row, index));
+                    const PixelPlace pixel = pixel_place(cell, cells, in_cell, lane);
+                    const RawTriple triple = shared->triple(shared->triple_of(pixel.x, pixel.y, index));
                     raw = {raw.x, raw.y, triple.u, triple.v, triple.stratum_t, triple.jitter_t};
                 }
-                const SamplePoint sample = to_sample(raw, shared ? shared->count() : spp, lens, times_);
                 const int slot = by_lens                         ? order[index]
                                  : grouping == Grouping::kMotion ? static_cast<int>(raw.stratum_t)
                                                                  : index;
-                SampleVector& vector = vectors_[b * spp + slot];
-                const LocalOffset place = local_offset(static_cast<int>(b) % kBlocksPerCell, lane);
-                vector.x[lane] = place.x + sample.x;
-                vector.y[lane] = place.y - sample.y;
-                vector.u[lane] = sample.u;
-                vector.v[lane] = sample.v;
-                vector.t[lane] = sample.t;
-                indices_[(b * spp + slot) * kLanes + lane] = static_cast<std::uint16_t>(index);
-                slots_[(b * kLanes + lane) * spp + index] = static_cast<std::uint16_t>(slot);
-                const int s = stratum_of(grouping, spp, base_u, base_v, index, slot);
-                stratum[b * spp + slot] = static_cast<std::uint8_t>(s);
-                extend(domains[b][s], {sample.u, sample.u, sample.v, sample.v, sample.t, sample.t});
+                store(lane, index, to_sample(raw, shared ? shared->count() : spp, lens, times_), slot,
+                      stratum_of(grouping, spp, base_u, base_v, index, slot));
             }
         }
     });
 
-    domains_.assign(stratum_count(grouping, spp), kEmptyDomain);
+    domains_.assign(strata_count, kEmptyDomain);
     for (const auto& block : domains)
         for (std::size_t s = 0; s < domains_.size(); ++s) extend(domains_[s], block[s]);
 
@@ -318,37 +298,66 @@ std::span<const SampleVector> SampleTable::block(int bx, int by) const {
 
 std::span<const SampleVector> SampleTable::block(int bx, int by, std::vector<SampleVector>& room) const {
     const std::span<const SampleVector> stored = block(bx, by);
-    if (!times_.roll()) return stored;
+    if (!is_placed()) return stored;
     room.assign(stored.begin(), stored.end());
-    roll(room, bx / kCellBlocks, by / kCellBlocks);
+    place_block(room, bx, by);
     return room;
 }
 
 std::span<const SampleVector> SampleTable::cell(int cx, int cy, std::vector<SampleVector>& room) const {
     const std::size_t vectors = static_cast<std::size_t>(kBlocksPerCell) * spp_;
     const auto stored = std::span(vectors_).subspan(cell_index(cx, cy) * vectors, vectors);
-    if (!times_.roll()) return stored;
+    if (!is_placed()) return stored;
     room.assign(stored.begin(), stored.end());
-    roll(room, cx, cy);
+    for (int block = 0; block < kBlocksPerCell; ++block)
+        place_block(std::span(room).subspan(static_cast<std::size_t>(block) * spp_, spp_),
+                    cx * kCellBlocks + block % kCellBlocks, cy * kCellBlocks + block / kCellBlocks);
     return room;
 }
 
 // Offsets from the middle of the cell are multiples of 1/256, so the places are exact.
-void SampleTable::roll(std::span<SampleVector> vectors, int cx, int cy) const {
-    const double x = kCellSize * (cx + 0.5), y = kCellSize * (cy + 0.5);
+void SampleTable::place_block(std::span<SampleVector> vectors, int bx, int by) const {
+    const double x = kCellSize * (bx / kCellBlocks + 0.5), y = kCellSize * (by / kCellBlocks + 0.5);
+    if (times_.roll())
+        for (SampleVector& v : vectors)
+            for (int lane = 0; lane < kLanes; ++lane) v.t[lane] = times_.at(v.t[lane], x + v.x[lane], y - v.y[lane]);
+    if (!eye_.on()) return;
+    const CatsEye::Outline outline = eye_.outline(kBlockSize * (bx + 0.5), kBlockSize * (by + 0.5));
     for (SampleVector& v : vectors)
-        for (int lane = 0; lane < kLanes; ++lane) v.t[lane] = times_.at(v.t[lane], x + v.x[lane], y - v.y[lane]);
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const glm::vec2 uv = outline.at({v.u[lane], v.v[lane]});
+            v.u[lane] = uv.x, v.v[lane] = uv.y;
+        }
 }
 
 std::span<const Domain> SampleTable::domains(int cx, int cy, std::vector<Domain>& room) const {
-    if (!times_.roll()) return domains_;
+    if (!is_placed()) return domains_;
     room.assign(domains_.begin(), domains_.end());
-    const double x = kCellSize * static_cast<double>(cx), y = kCellSize * static_cast<double>(cy);
-    for (Domain& d : room) {
-        const auto [t0, t1] = times_.range(d.t0, d.t1, x, x + kCellSize, y, y + kCellSize);
-        d.t0 = t0, d.t1 = t1;
+    if (times_.roll()) {
+        const double x = kCellSize * static_cast<double>(cx), y = kCellSize * static_cast<double>(cy);
+        for (Domain& d : room) {
+            const auto [t0, t1] = times_.range(d.t0, d.t1, x, x + kCellSize, y, y + kCellSize);
+            d.t0 = t0, d.t1 = t1;
+        }
     }
+    if (eye_.on()) fit_lens(cx, cy, room);
     return room;
+}
+
+// The lens points of a cell's own samples.
+void SampleTable::fit_lens(int cx, int cy, std::vector<Domain>& domains) const {
+    static thread_local std::vector<SampleVector> room;
+    const std::span<const SampleVector> vectors = cell(cx, cy, room);
+    for (Domain& d : domains) d = {kEmptyDomain.u0, kEmptyDomain.u1, kEmptyDomain.v0, kEmptyDomain.v1, d.t0, d.t1};
+    for (const Stratum& s : strata(cx, cy))
+        for (int block = 0; block < kBlocksPerCell; ++block) {
+            if (!(s.blocks >> block & 1u)) continue;
+            const SampleVector& v = vectors[static_cast<std::size_t>(block) * spp_ + s.slot];
+            Domain& d = domains[s.stratum];
+            const auto [u0, u1] = std::minmax_element(std::begin(v.u), std::end(v.u));
+            const auto [v0, v1] = std::minmax_element(std::begin(v.v), std::end(v.v));
+            d = {std::min(d.u0, *u0), std::max(d.u1, *u1), std::min(d.v0, *v0), std::max(d.v1, *v1), d.t0, d.t1};
+        }
 }
 
 std::span<const std::uint16_t> SampleTable::indices(int bx, int by) const {
@@ -370,8 +379,9 @@ SamplePoint SampleTable::sample(int px, int py, int index) const {
     const int block = py % kCellSize / kBlockSize * kCellBlocks + px % kCellSize / kBlockSize;
     const LocalOffset place = local_offset(block, lane);
     const float x = vector.x[lane] - place.x, y = place.y - vector.y[lane];
-    return {x, y, vector.u[lane], vector.v[lane],
-            times_.at(vector.t[lane], px + static_cast<double>(x), py + static_cast<double>(y))};
+    glm::vec2 uv(vector.u[lane], vector.v[lane]);
+    if (eye_.on()) uv = eye_.outline(kBlockSize * (px / kBlockSize + 0.5), kBlockSize * (py / kBlockSize + 0.5)).at(uv);
+    return {x, y, uv.x, uv.y, times_.at(vector.t[lane], px + static_cast<double>(x), py + static_cast<double>(y))};
 }
 
 }  // namespace pentaprism

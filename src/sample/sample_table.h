@@ -9,13 +9,13 @@
 
 #include "base/aligned.h"
 #include "camera/view.h"
+#include "sample/block_pattern.h"
+#include "sample/cats_eye.h"
 #include "sample/sample_times.h"
 #include "sample/shared_triples.h"
 
 namespace pentaprism {
 
-inline constexpr int kBlockSize = 4;                        ///< pixels a side of a block
-inline constexpr int kLanes = kBlockSize * kBlockSize;      ///< samples in a vector: one for each pixel of a block
 inline constexpr int kCellSize = 32;                        ///< pixels a side of a cell of the exact test's grid
 inline constexpr int kCellBlocks = kCellSize / kBlockSize;  ///< blocks a side of a cell
 inline constexpr int kBlocksPerCell = kCellBlocks * kCellBlocks;
@@ -63,9 +63,10 @@ struct PixelSamples {
 class SampleTable {
   public:
     /// Cost and memory: period^2 * spp * 20 bytes, at most about 90 MB; shared patterns 12 bytes a sample more. These
-    /// arrange samples by index, whatever the grouping, and know no rolling shutter.
+    /// arrange samples by index, whatever the grouping, and know no rolling shutter, no cat's eye and no other sampler.
     SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping grouping,
-                SamplePattern pattern = SamplePattern::kFree, SampleTimes times = {});
+                SamplePattern pattern = SamplePattern::kFree, SampleTimes times = {}, CatsEye eye = {},
+                Sampler sampler = Sampler::kStratified);
 
     int spp() const { return spp_; }
     int slots() const { return spp_; }  ///< vectors of a block
@@ -73,10 +74,11 @@ class SampleTable {
     SamplePattern pattern() const { return pattern_; }
 
     /// Blocks are addressed in the whole picture: block (bx, by) covers pixels [4 bx, 4 bx + 4) x [4 by, 4 by + 4).
-    /// A rolling shutter gives each place times of its own: its vectors are written into `room`, which serves again.
+    /// A rolling shutter and a cat's eye give each place times and lens points of its own: its vectors are written into
+    /// `room`, which serves again.
     std::span<const SampleVector> block(int bx, int by, std::vector<SampleVector>& room) const;
 
-    /// The same, but with a rolling shutter each t is within the exposure of its row: for x, y, u and v.
+    /// The same without these: for x and y.
     std::span<const SampleVector> block(int bx, int by) const;
 
     /// All vectors of a cell: [block * slots + slot], block = 8 * (row in the cell) + column, the order of Hits. Cells
@@ -94,7 +96,7 @@ class SampleTable {
     int slot_of(int px, int py, int index) const;
 
     /// Strata of (u, v, t): all samples of a stratum in that cell lie in domains(...)[stratum]. Without a rolling
-    /// shutter wherever they are in the picture.
+    /// shutter and a cat's eye wherever they are in the picture.
     std::span<const Domain> domains(int cx, int cy, std::vector<Domain>& room) const;
 
     /// The vectors of a cell by stratum: slot `slot` of the blocks in `blocks` (bit 8 * row + column) lies in
@@ -113,7 +115,9 @@ class SampleTable {
     PixelSamples by_pixel(int cx, int cy) const;
 
   private:
-    void roll(std::span<SampleVector> vectors, int cx, int cy) const;
+    bool is_placed() const { return times_.roll() || eye_.on(); }
+    void place_block(std::span<SampleVector> vectors, int bx, int by) const;
+    void fit_lens(int cx, int cy, std::vector<Domain>& domains) const;
     std::size_t cell_index(int cx, int cy) const;
     std::size_t block_index(int bx, int by) const;
     void arrange_by_triple(const SharedTriples& shared);
@@ -124,6 +128,7 @@ class SampleTable {
     Grouping grouping_;
     SamplePattern pattern_;
     SampleTimes times_;
+    CatsEye eye_;
     std::vector<SampleVector> vectors_;   // [cell of the period][block][slot]
     std::vector<std::uint16_t> indices_;  // [block][slot][lane]
     std::vector<std::uint16_t> slots_;    // [block][lane][index]

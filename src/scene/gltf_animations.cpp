@@ -1,9 +1,14 @@
-// Animations (glTF 2.0, 3.11).
+// Animations (glTF 2.0, 3.11), and of KHR_animation_pointer
+// (https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Khronos/KHR_animation_pointer) what moves nodes and
+// cameras: a field of view, a focus distance, an f-number.
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 #include <set>
+#include <string_view>
+#include <tuple>
 
 #include "scene/gltf_parts.h"
 
@@ -42,6 +47,7 @@ void read_times(Document& document, const Object& sampler, std::vector<float>& t
 void read_values(Document& document, const Object& sampler, Channel& channel) {
     const Index output = sampler.index("output", "accessors");
     const char* const type = channel.path == ChannelPath::kWeights    ? "SCALAR"
+                             : channel.camera != kNone                ? "SCALAR"
                              : channel.path == ChannelPath::kRotation ? "VEC4"
                                                                       : "VEC3";
     require_type(document, output, {type}, sampler.where() + ", output,");
@@ -70,12 +76,57 @@ void normalise_rotations(Document& document, const Object& sampler, Channel& cha
     }
 }
 
+/// "/LIST/INDEX/PROPERTY" with an index below `count`: what is left of it, and the index.
+std::optional<std::pair<Index, std::string_view>> item_of(std::string_view pointer, std::string_view list,
+                                                          std::size_t count) {
+    if (pointer.substr(0, list.size()) != list) return std::nullopt;
+    pointer.remove_prefix(list.size());
+    std::size_t index = 0;
+    const auto [end, problem] = std::from_chars(pointer.data(), pointer.data() + pointer.size(), index);
+    const auto digits = static_cast<std::size_t>(end - pointer.data());
+    if (problem != std::errc() || index >= count || digits >= pointer.size() || pointer[digits] != '/')
+        return std::nullopt;
+    return std::pair(static_cast<Index>(index), pointer.substr(digits + 1));
+}
+
+/// What a pointer moves: a camera's property, or (true) a node's, whose name is left in `path`.
+bool read_pointer(const Scene& scene, std::string_view pointer, Channel& channel, std::string& path) {
+    constexpr std::string_view kFocus = "extras/focusDistance", kFstop = "extras/fstop";
+    const auto camera = item_of(pointer, "/cameras/", scene.cameras.size());
+    const auto node = item_of(pointer, "/nodes/", scene.nodes.size());
+    const std::string_view property = camera ? camera->second : node ? node->second : "";
+    if (property == kFocus || (camera && property == "extensions/EXT_cameras_sensor/lens/focusDistance"))
+        channel.path = ChannelPath::kFocusDistance;
+    else if (property == kFstop)
+        channel.path = ChannelPath::kFstop;
+    else if (camera && property == "perspective/yfov")
+        channel.path = ChannelPath::kYfov;
+    else if (node) {
+        channel.node = node->first;
+        path = property;
+        return true;
+    } else
+        return false;
+    channel.camera = camera ? camera->first : scene.nodes[static_cast<std::size_t>(node->first)].camera;
+    channel.width = 1;
+    return false;
+}
+
 /// False: the channel moves nothing that is shown, for a reason that was given as a warning.
 bool read_target(Document& document, const Scene& scene, const Object& object, Channel& channel) {
     const Object target = object.child("target");
     channel.node = target.index("node", "nodes");
     if (!target.has("path")) target.fail("has no path");
-    const std::string path = target.text("path");
+    std::string path = target.text("path");
+    if (path == "pointer" && target.has_extension("KHR_animation_pointer")) {
+        const std::string pointer = target.extension("KHR_animation_pointer").text("pointer");
+        if (!read_pointer(scene, pointer, channel, path)) {
+            if (channel.camera == kNone)
+                document.warn(fmt::format("{} moves {}, which is not supported; it does not move", target.where(),
+                                          pointer.empty() ? "nothing" : pointer));
+            return channel.camera != kNone;
+        }
+    }
     const auto known = channel_path(path);
     if (!known) {
         document.warn(
@@ -117,7 +168,7 @@ Animation read_animation(Document& document, const Scene& scene, const Object& o
     }
     const auto channels = object.children("channels", "channel");
     if (channels.empty()) object.fail("has no channels");
-    std::set<std::pair<Index, ChannelPath>> targets;
+    std::set<std::tuple<Index, Index, ChannelPath>> targets;
     for (const Object& part : channels) {
         const std::size_t index = part.required_size("sampler");
         if (index >= samplers.size())
@@ -129,7 +180,7 @@ Animation read_animation(Document& document, const Scene& scene, const Object& o
         channel.times = times[index];
         read_values(document, sampler, channel);
         normalise_rotations(document, sampler, channel);
-        if (!targets.emplace(channel.node, channel.path).second) {
+        if (!targets.emplace(channel.node, channel.camera, channel.path).second) {
             document.warn(part.where() + " moves what another channel of the clip moves; the first one is used");
             continue;
         }

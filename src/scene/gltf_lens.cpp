@@ -1,5 +1,6 @@
 #include "scene/gltf_lens.h"
 
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -9,16 +10,31 @@ namespace {
 
 /// Extras are free text to glTF: what is not a usable number is passed over with a warning.
 std::optional<double> usable_number(Document& document, const Object& owner, const Json& extras, const char* key,
-                                    double low) {
+                                    double low, double high) {
     const auto found = extras.find(key);
     if (found == extras.end()) return std::nullopt;
-    if (found->is_number() && found->get<double>() - found->get<double>() == 0.0 && found->get<double>() >= low)
+    if (found->is_number() && found->get<double>() - found->get<double>() == 0.0 && found->get<double>() >= low &&
+        found->get<double>() <= high)
         return found->get<double>();
     document.warn(fmt::format("{}, extras, has a {} that is not usable; it is ignored", owner.where(), key));
     return std::nullopt;
 }
 
-void keep_first(std::optional<double>& value, const std::optional<double>& other) {
+/// Two depths, the nearer first.
+std::optional<std::array<double, 2>> usable_range(Document& document, const Object& owner, const Json& extras,
+                                                  const char* key) {
+    const auto found = extras.find(key);
+    if (found == extras.end()) return std::nullopt;
+    if (found->is_array() && found->size() == 2 && (*found)[0].is_number() && (*found)[1].is_number()) {
+        const double from = (*found)[0], to = (*found)[1];
+        if (from > 0.0 && from <= to && std::isfinite(to)) return std::array{from, to};
+    }
+    document.warn(fmt::format("{}, extras, has a {} that is not usable; it is ignored", owner.where(), key));
+    return std::nullopt;
+}
+
+template <class T>
+void keep_first(std::optional<T>& value, const std::optional<T>& other) {
     if (!value) value = other;
 }
 
@@ -52,7 +68,9 @@ void read_lens(Document& document, const Object& owner, LensInfo& lens) {
     if (owner.has_extension("EXT_cameras_sensor")) read_sensor(document, owner.extension("EXT_cameras_sensor"), lens);
     const auto found = owner.json().find("extras");
     if (found == owner.json().end() || !found->is_object()) return;
-    const auto number = [&](const char* key, double low) { return usable_number(document, owner, *found, key, low); };
+    const auto number = [&](const char* key, double low, double high = 1e30) {
+        return usable_number(document, owner, *found, key, low, high);
+    };
     keep_first(lens.fstop, number("fstop", 1e-3));
     keep_first(lens.focus_distance, number("focusDistance", 1e-6));
     keep_first(lens.focal_length_mm, number("focalLength", 1e-3));
@@ -60,6 +78,11 @@ void read_lens(Document& document, const Object& owner, LensInfo& lens) {
     keep_first(lens.shutter, number("shutter", 0.0));
     keep_first(lens.aperture_rotation_deg, number("apertureRotation", -1e9));
     keep_first(lens.aperture_ratio, number("apertureRatio", 1e-3));
+    keep_first(lens.max_foreground_blur, number("maxForegroundBlur", 0.0));
+    keep_first(lens.tilt_deg, number("tilt", -89.0, 89.0));
+    keep_first(lens.swing_deg, number("swing", -89.0, 89.0));
+    keep_first(lens.cats_eye, number("catsEye", 0.0, 1.5));
+    keep_first(lens.focus_range, usable_range(document, owner, *found, "focusRange"));
     if (const auto blades = number("apertureBlades", 0.0); blades && !lens.aperture_blades && *blades <= 1000.0) {
         lens.aperture_blades = static_cast<int>(*blades);
     }

@@ -343,6 +343,11 @@ Json lens_extras(const LensInfo& lens) {
     put("apertureBlades", lens.aperture_blades);
     put("apertureRotation", lens.aperture_rotation_deg);
     put("apertureRatio", lens.aperture_ratio);
+    put("focusRange", lens.focus_range);
+    put("maxForegroundBlur", lens.max_foreground_blur);
+    put("tilt", lens.tilt_deg);
+    put("swing", lens.swing_deg);
+    put("catsEye", lens.cats_eye);
     return extras;
 }
 
@@ -422,8 +427,17 @@ void Writer::nodes() {
     }
 }
 
+Json target_of(const Channel& channel) {
+    constexpr std::array kPaths{"translation",          "rotation",    "scale", "weights", "perspective/yfov",
+                                "extras/focusDistance", "extras/fstop"};
+    const char* path = kPaths[std::size_t(channel.path)];
+    if (channel.camera == kNone) return {{"node", channel.node}, {"path", path}};
+    Json target{{"path", "pointer"}};
+    target["extensions"]["KHR_animation_pointer"]["pointer"] = fmt::format("/cameras/{}/{}", channel.camera, path);
+    return target;
+}
+
 void Writer::animations() {
-    constexpr std::array kPaths{"translation", "rotation", "scale", "weights"};
     constexpr std::array kInterpolations{"STEP", "LINEAR", "CUBICSPLINE"};
     for (const Animation& animation : scene_.animations) {
         if (animation.channels.empty()) continue;
@@ -434,8 +448,8 @@ void Writer::animations() {
             // Weights are a list of single numbers, however many there are for each key.
             const int width = channel.path == ChannelPath::kWeights ? 1 : channel.width;
             const int values = add_floats(channel.values, width, false);
-            channels.push_back({{"sampler", samplers.size()},
-                                {"target", {{"node", channel.node}, {"path", kPaths[std::size_t(channel.path)]}}}});
+            if (channel.camera != kNone) use("KHR_animation_pointer");
+            channels.push_back({{"sampler", samplers.size()}, {"target", target_of(channel)}});
             samplers.push_back({{"input", times->second},
                                 {"interpolation", kInterpolations[std::size_t(channel.interpolation)]},
                                 {"output", values}});

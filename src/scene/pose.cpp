@@ -52,7 +52,21 @@ void apply_channel(const Channel& channel, double time, Transform& transform, st
             weights.assign(values.begin(), values.end());
             break;
         }
+        case ChannelPath::kYfov:
+        case ChannelPath::kFocusDistance:
+        case ChannelPath::kFstop:
+            break;  // of a camera
     }
+}
+
+// Splines may swing out of what a camera can be.
+void apply_channel(const Channel& channel, double time, Camera& camera) {
+    constexpr double kWidestYfov = 3.1, kLeast = 1e-3;
+    double value = 0.0;
+    sample_channel(channel, time, std::span(&value, 1));
+    if (channel.path == ChannelPath::kYfov) camera.yfov = std::clamp(value, kLeast, kWidestYfov);
+    if (channel.path == ChannelPath::kFocusDistance) camera.lens.focus_distance = std::max(value, kLeast);
+    if (channel.path == ChannelPath::kFstop) camera.lens.fstop = std::max(value, kLeast);
 }
 
 bool has_targets(const Mesh& mesh) {
@@ -123,7 +137,12 @@ Pose evaluate(const Scene& scene, std::span<const Index> animations, double time
     }
     for (const Index animation : animations) {
         for (const Channel& channel : at(scene.animations, animation).channels) {
-            apply_channel(channel, time, at(transforms, channel.node), at(pose.weights, channel.node));
+            if (channel.camera == kNone) {
+                apply_channel(channel, time, at(transforms, channel.node), at(pose.weights, channel.node));
+                continue;
+            }
+            if (pose.cameras.empty()) pose.cameras = scene.cameras;
+            apply_channel(channel, time, at(pose.cameras, channel.camera));
         }
     }
 

@@ -27,11 +27,17 @@ std::vector<Index> choose_animations(const Scene& scene, const std::string& choi
 struct Pose {
     std::vector<glm::dmat4> world;            ///< node to world
     std::vector<std::vector<float>> weights;  ///< morph weights in force, for each node with a morphed mesh
+    std::vector<Camera> cameras;              ///< Scene::cameras at this time; empty when none is animated
 };
 
 /// Clips play once, from time 0: before the first and after the last key the nearest key holds (glTF 2.0). Rotations by
 /// slerp; all arithmetic in double.
 Pose evaluate(const Scene& scene, std::span<const Index> animations, double time);
+
+/// A camera at the time of the pose.
+inline const Camera& camera_at(const Scene& scene, const Pose& pose, Index camera) {
+    return (pose.cameras.empty() ? scene.cameras : pose.cameras)[static_cast<std::size_t>(camera)];
+}
 
 /// False promises that the placement's world-space vertices are the same at all times.
 bool may_move(const Scene& scene, std::span<const Index> animations, const Placement& placement);

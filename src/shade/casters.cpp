@@ -65,10 +65,12 @@ Frame place_parts(const WorldMotion& world, const Frame& frame, const LightView&
     if (!view.perspective) out.depths.resize(points);
     out.corners.resize(3 * std::size_t{triangles});
     out.part_of.resize(triangles);
+    if (!frame.pieces.empty()) out.pieces.resize(triangles);
     return out;
 }
 
-void fill_part(const WorldMotion& world, const Part& was, const LightView& view, std::uint32_t number, Frame& out) {
+void fill_part(const WorldMotion& world, const Frame& frame, const Part& was, const LightView& view,
+               std::uint32_t number, Frame& out) {
     const Part& part = out.parts[number];
     const std::size_t points = part.vertex_count * static_cast<std::size_t>(part.moves ? part.segments + 1 : 1);
     for (std::size_t i = 0; i < points; ++i) {
@@ -82,6 +84,9 @@ void fill_part(const WorldMotion& world, const Part& was, const LightView& view,
     for (std::size_t i = 0; i < 3 * std::size_t{part.triangle_count}; ++i)
         to[i] = corner[i] - was.first_point + part.first_point;
     std::fill_n(out.part_of.begin() + part.first_triangle, part.triangle_count, number);
+    if (!frame.pieces.empty())
+        std::copy_n(frame.pieces.begin() + was.first_triangle, part.triangle_count,
+                    out.pieces.begin() + part.first_triangle);
 }
 
 float outward(double value, double direction) {
@@ -180,7 +185,7 @@ Casters make_casters(const WorldMotion& world, const Frame& frame, const LightVi
     std::vector<std::vector<Casters::Box>> bounded(taken.size());
     for_ranges(parallel, taken.size(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            fill_part(world, world.parts[taken[i]], view, static_cast<std::uint32_t>(i), seen);
+            fill_part(world, frame, world.parts[taken[i]], view, static_cast<std::uint32_t>(i), seen);
             bound_part(seen, seen.parts[i], bounded[i]);
         }
     });

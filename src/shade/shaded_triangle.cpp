@@ -46,7 +46,7 @@ glm::vec3 visible_normal(const glm::vec3& normal, const glm::vec3& face, const g
 }  // namespace
 
 ShadedTriangle::ShadedTriangle(const ShadingScene& scene, std::uint32_t triangle)
-    : scene_(scene), part_(scene.part_of(triangle)), vertices_(scene.frame().vertices(triangle)) {
+    : scene_(scene), triangle_(triangle), part_(scene.part_of(triangle)), vertices_(scene.frame().vertices(triangle)) {
     if (part_.material->textured || scene.options().rate == ShadingRate::kDecoupled) project(triangle);
     const glm::vec3 &a = part_.positions[vertices_[0]], &b = part_.positions[vertices_[1]],
                     &c = part_.positions[vertices_[2]];
@@ -102,14 +102,18 @@ TextureFootprint ShadedTriangle::footprint(const glm::vec3& barycentrics, int se
         point.z * (projection_.by_x - b * (projection_.by_x.x + projection_.by_x.y + projection_.by_x.z));
     const glm::dvec3 dy =
         point.z * (projection_.by_y - b * (projection_.by_y.x + projection_.by_y.y + projection_.by_y.z));
-    const glm::dvec2 uv0(uvs[vertices_[0]]);
-    const glm::dvec2 edge1 = glm::dvec2(uvs[vertices_[1]]) - uv0, edge2 = glm::dvec2(uvs[vertices_[2]]) - uv0;
+    const Frame& frame = scene_.frame();
+    const auto uv = [&](int k) {
+        if (frame.pieces.empty()) return glm::dvec2(uvs[vertices_[k]]);
+        return glm::dvec2(interpolate(uvs, vertices_, frame.in_source(triangle_, glm::vec3(k == 0, k == 1, k == 2))));
+    };
+    const glm::dvec2 edge1 = uv(1) - uv(0), edge2 = uv(2) - uv(0);
     const glm::vec2 by_x(dx.y * edge1 + dx.z * edge2), by_y(dy.y * edge1 + dy.z * edge2);
 
     const glm::dvec3 motion = b.x * projection_.motion[0] + b.y * projection_.motion[1] + b.z * projection_.motion[2];
     const glm::vec2 velocity((glm::dvec2(motion) - motion.z / point.z * glm::dvec2(point)) / point.z);
     const float coc = static_cast<float>(glm::dot(b, projection_.coc) / point.z);
-    const float ratio = static_cast<float>(scene_.frame().view.lens.ratio);
+    const float ratio = static_cast<float>(frame.view.lens.ratio);
 
     TextureFootprint footprint;
     const ShadingOptions& options = scene_.options();
@@ -242,12 +246,13 @@ glm::vec3 ShadedTriangle::mapped_normal(const glm::vec3& b, const glm::vec3& map
     return map.x * along + map.y * (glm::cross(normal, along) * tangent.w) + map.z * normal;
 }
 
-void ShadedTriangle::shade(const glm::vec3& b, bool front, const ShadingCell& cell, LitColor& out) const {
+void ShadedTriangle::shade(const glm::vec3& barycentrics, bool front, const ShadingCell& cell, LitColor& out) const {
     out.shadowed.clear();
     out.rest = glm::vec3(0.0f);
     const BoundMaterial& bound = *part_.material;
     const Material& material = bound.material;
     const Primitive& primitive = *part_.primitive;
+    const glm::vec3 b = scene_.frame().in_source(triangle_, barycentrics);  // of vertices_
 
     glm::vec2 uv[2] = {};
     TextureFootprint footprints[2];
@@ -255,7 +260,7 @@ void ShadedTriangle::shade(const glm::vec3& b, bool front, const ShadingCell& ce
         for (int set = 0; set < 2; ++set) {
             if (primitive.texcoords[set].empty()) continue;
             uv[set] = interpolate(primitive.texcoords[set], vertices_, b);
-            footprints[set] = footprint(b, set, cell);
+            footprints[set] = footprint(barycentrics, set, cell);
         }
     const auto look_up = [&](const BoundTexture& texture) {
         return texture.pyramid ? texture.sample(uv[texture.set], footprints[texture.set]) : glm::vec4(1.0f);

@@ -58,8 +58,9 @@ class ShadedTriangle {
     TextureFootprint footprint(const glm::vec3& barycentrics, int set, const ShadingCell& cell) const;
 
     const ShadingScene& scene_;
+    std::uint32_t triangle_;
     const ShadedPart& part_;
-    std::array<std::uint32_t, 3> vertices_;
+    std::array<std::uint32_t, 3> vertices_;  // Frame::vertices()
     Projection projection_;
     CellTriangle cells_;
     glm::vec3 face_normal_{0.0f};  // unit, towards the front

@@ -72,9 +72,10 @@ ShadingScene::ShadingScene(const Frame& frame, const ShadingOptions& options) : 
         for (int k = 0; turns && k <= kCameraKnots; ++k) {
             const double time = frame.view.shutter.at(static_cast<double>(k) / kCameraKnots);
             const Pose pose = evaluate(scene, frame.animations, time);
-            cameras_.emplace_back(glm::dmat3(glm::inverse(world_to_camera(frame.view, pose))));
+            cameras_.push_back(
+                {glm::dmat3(glm::inverse(world_to_camera(frame.view, pose))), view_at(scene, frame.view, pose)});
         }
-        if (!turns) cameras_.emplace_back(glm::dmat3(camera_to_world));
+        if (!turns) cameras_.push_back({glm::dmat3(camera_to_world), frame.view});
     }
     shadows_ = std::make_unique<Shadows>(frame, lighting_, eye, options.shadows);
 
@@ -92,17 +93,18 @@ ShadingScene::ShadingScene(const Frame& frame, const ShadingOptions& options) : 
 }
 
 glm::vec3 ShadingScene::background(float gx, float gy, float u, float v, float t) const {
-    const View& view = frame_.view;
-    glm::vec3 ray(0.0f, 0.0f, -1.0f);
-    if (view.perspective) {
-        const float b = static_cast<float>(view.lens.b);
-        ray = {(gx - u * b) / static_cast<float>(view.fx), (gy - v * b) / static_cast<float>(view.fy), -1.0f};
-    }
+    const auto seen_by = [&](const CameraKnot& camera) {
+        if (!camera.view.perspective) return camera.to_world * glm::vec3(0.0f, 0.0f, -1.0f);
+        // Far beyond any range of focus, where lines of sight are straight.
+        const glm::dvec2 slope =
+            line_of_sight(camera.view, gx, gy, u, v).direction / glm::dvec2(camera.view.fx, camera.view.fy);
+        return camera.to_world * glm::vec3(slope, -1.0f);
+    };
     const float at = t * static_cast<float>(cameras_.size() - 1);
     const std::size_t knot = std::min(static_cast<std::size_t>(at), cameras_.size() - 1);
-    glm::vec3 direction = cameras_[knot] * ray;
+    glm::vec3 direction = seen_by(cameras_[knot]);
     if (knot + 1 < cameras_.size())
-        direction += (at - static_cast<float>(knot)) * (cameras_[knot + 1] * ray - direction);
+        direction += (at - static_cast<float>(knot)) * (seen_by(cameras_[knot + 1]) - direction);
     return options_.environment->radiance(glm::normalize(direction));
 }
 
@@ -110,7 +112,7 @@ float ShadingScene::shadow_texel(const glm::vec3& position) const {
     const View& view = frame_.view;
     const double depth = -glm::dot(glm::dvec3(position), glm::dvec3(backwards_));
     const double w = view.perspective ? std::max(depth, view.depth_near) : 1.0;
-    const double blur = 2.0 * std::abs(view.lens.a + view.lens.b * depth) / w;
+    const double blur = 2.0 * std::abs(view.coc(0.0, 0.0, depth)) / w;
     return static_cast<float>(w / view.fx * std::max(1.0, 0.25 * blur));
 }
 

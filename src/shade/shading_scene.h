@@ -78,8 +78,12 @@ class ShadingScene {
     std::vector<ShadedPart> parts_;
     Lighting lighting_;
     std::unique_ptr<const Shadows> shadows_;
-    std::vector<glm::mat3> cameras_;  // to world, at the knots of the shutter; for backgrounds
-    glm::vec3 backwards_;             // against the direction of view
+    struct CameraKnot {
+        glm::mat3 to_world;
+        View view;
+    };
+    std::vector<CameraKnot> cameras_;  // at the knots of the shutter; for backgrounds
+    glm::vec3 backwards_;              // against the direction of view
 };
 
 }  // namespace pentaprism

@@ -37,8 +37,7 @@ constexpr float kFarthestBehind = 12.0f, kFarthestBefore = 100.0f;
 constexpr float kBias = 0.2f;  // texels
 constexpr int kAttempts = 16;  // texels along a moving point's way
 constexpr int kSamples = ShadowMap::kSamples;
-constexpr int kFloatsPerVector = sizeof(SampleVector) / sizeof(float);
-static_assert(ShadowMap::kSamples == 4 && kAll == 16, "lanes are four for each quarter");
+static_assert(kSamples == 4 && kAll == 16 && kCellSize == 32, "shifts and masks below");
 
 struct Place {
     Vec x, y, z;
@@ -189,11 +188,9 @@ class Lookup {
         const I d;
         const Vec half = hn::Set(f, half_);
         const IVec px = hn::ConvertTo(d, hn::Add(x, half)), py = hn::ConvertTo(d, hn::Sub(half, y));
-        const IVec three = hn::Set(d, 3), seven = hn::Set(d, 7);
-        const IVec block =
-            hn::Add(hn::ShiftLeft<3>(hn::And(hn::ShiftRight<2>(py), seven)), hn::And(hn::ShiftRight<2>(px), seven));
-        const IVec lane = hn::Add(hn::ShiftLeft<2>(hn::And(py, three)), hn::And(px, three));
-        const IVec index = hn::Add(hn::ShiftLeft<4>(hn::Add(hn::ShiftLeft<2>(block), quarter)), lane);
+        const IVec in_cell = hn::Set(d, kCellSize - 1);
+        const IVec texel = hn::Add(hn::ShiftLeft<5>(hn::And(py, in_cell)), hn::And(px, in_cell));
+        const IVec index = hn::Add(hn::ShiftLeft<2>(texel), quarter);
         return {hn::Add(hn::ShiftLeft<16>(hn::ShiftRight<5>(py)), hn::ShiftRight<5>(px)), index};
     }
 
@@ -213,16 +210,11 @@ class Lookup {
 
     // Time of the map's samples there.
     HWY_INLINE Vec times(F f, const Texels& at, Mask wanted) const {
-        const IVec place = sample_place(at.index);
         Vec t = hn::Zero(f);
         for_each_cell(f, at.key, wanted, [&](Mask here, const ShadowReceiver::Cell& cell) HWY_ATTR {
-            t = hn::IfThenElse(here, hn::GatherIndex(f, cell.samples->t, place), t);
+            t = hn::IfThenElse(here, hn::GatherIndex(f, cell.samples->t, at.index), t);
         });
         return t;
-    }
-    static HWY_INLINE IVec sample_place(IVec index) {
-        const I d;
-        return hn::Add(hn::Mul(hn::ShiftRight<4>(index), hn::Set(d, kFloatsPerVector)), hn::And(index, hn::Set(d, 15)));
     }
 
     // A map sample tells of the point only if the point is there at the sample's time: texels along the way are tried
@@ -292,14 +284,13 @@ class Lookup {
         }
 
         const Texels at = texels(f, x, y, q);
-        const IVec place = sample_place(at.index);
         Vec occluder = hn::Set(f, INFINITY), sample_x = hn::Zero(f), sample_y = hn::Zero(f), t = hn::Zero(f);
         for_each_cell(f, at.key, wanted, [&](Mask here, const ShadowReceiver::Cell& cell) HWY_ATTR {
             occluder = hn::IfThenElse(here, hn::GatherIndex(f, cell.depths, at.index), occluder);
-            sample_x = hn::IfThenElse(here, hn::GatherIndex(f, cell.samples->x, place), sample_x);
-            sample_y = hn::IfThenElse(here, hn::GatherIndex(f, cell.samples->y, place), sample_y);
+            sample_x = hn::IfThenElse(here, hn::GatherIndex(f, cell.samples->x, at.index), sample_x);
+            sample_y = hn::IfThenElse(here, hn::GatherIndex(f, cell.samples->y, at.index), sample_y);
             if constexpr (kPath != Path::kStill)
-                t = hn::IfThenElse(here, hn::GatherIndex(f, cell.samples->t, place), t);
+                t = hn::IfThenElse(here, hn::GatherIndex(f, cell.samples->t, at.index), t);
         });
         if (hn::AllTrue(f, hn::Eq(occluder, hn::Set(f, INFINITY)))) return kEvery;
         // From the middle of the cell to that of the map.

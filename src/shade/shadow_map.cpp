@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
-#include "bound/screen_bounds.h"
-#include "cover/cover.h"
+#include "base/aligned.h"
 
 namespace pentaprism {
 namespace {
@@ -17,7 +15,7 @@ constexpr int kLimits = 24, kLeastLimit = -8;  // depths of 2^-8 metres and up; 
 constexpr int kLevels = (ShadowMap::kCoarsest - kFinest + 1) * kLimits;
 
 // What all cells share in which nothing is.
-const std::vector<float> kEmptyCell(std::size_t{kCellSize} * kCellSize * ShadowMap::kSamples, INFINITY);
+const std::vector<float> kEmptyCell(ShadowSamples::kPerCell, INFINITY);
 
 // Keeps what is there already: several threads may make the same thing, and all makes are equal.
 template <class T>
@@ -48,11 +46,12 @@ struct ShadowMap::Level {
     std::unique_ptr<std::atomic<Page*>[]> pages;
 };
 
-ShadowMap::ShadowMap(const WorldMotion& world, const Frame& frame, const SampleTable& table, const LightView& view,
+ShadowMap::ShadowMap(const WorldMotion& world, const Frame& frame, const ShadowSamples& samples, const LightView& view,
                      int width)
     : world_(world),
       frame_(frame),
-      table_(table),
+      samples_(samples),
+      draw_(draw_shadow_cell()),
       view_(view),
       width_(width),
       // Half a level of the finest texels holds the widest tangent.
@@ -135,47 +134,15 @@ const float* ShadowMap::depths(int exponent, int limit, int cx, int cy) const {
     return expected;
 }
 
-const SampleVector* ShadowMap::samples(int cx, int cy) const {
-    static thread_local std::vector<SampleVector> room;  // stays empty: the map's shutter does not roll
-    return table_.cell(cx, cy, room).data();
-}
-
 const float* ShadowMap::render(int exponent, int cx, int cy, const List& list) const {
-    struct Scratch {
-        Hits hits;
-        std::vector<BinnedTriangle> binned;
-        std::vector<std::uint32_t> order;
-    };
-    static thread_local Scratch scratch;
-    const Tile tile{cx * kCellSize, cy * kCellSize, (cx + 1) * kCellSize, (cy + 1) * kCellSize};
-    const PixelRect limits{tile.x0, tile.x1, tile.y0, tile.y1};
-    const double scale = std::ldexp(1.0, -exponent);
-    scratch.binned.clear();
-    const Casters& seen = casters();
-    for (const std::uint32_t i : list) {
-        const Casters::Box& box = seen.boxes[i];
-        ScreenBox scaled;
-        scaled.x0 = box.x0 * scale, scaled.x1 = box.x1 * scale, scaled.y0 = box.y0 * scale, scaled.y1 = box.y1 * scale;
-        const PixelRect rect = covered_pixels(scaled, width_, width_, limits);
-        if (rect.empty()) continue;
-        scratch.binned.push_back({box.triangle, box.segment, static_cast<std::uint16_t>(rect.x0),
-                                  static_cast<std::uint16_t>(rect.x1), static_cast<std::uint16_t>(rect.y0),
-                                  static_cast<std::uint16_t>(rect.y1), Facing::kMixed, box.nearest});
-    }
-    if (scratch.binned.empty()) return kEmptyCell.data();
-    scratch.order.resize(scratch.binned.size());
-    std::iota(scratch.order.begin(), scratch.order.end(), 0u);
-    scratch.hits.reset(kSamples);
-    CoverCounts counts;
-    // In texels of the level: a power of two, so the numbers are the same.
-    cover_vectors(TileWork{seen.frame, table_, scratch.binned, scratch.order, tile, nullptr, static_cast<float>(scale)},
-                  scratch.hits, counts);
-    const auto& depths = scratch.hits.depth;
+    if (list.empty()) return kEmptyCell.data();
+    static thread_local AlignedVector<float> depths(ShadowSamples::kPerCell);
+    draw_({casters(), list, samples(cx, cy), cx, cy, width_, std::ldexp(1.0f, -exponent)}, depths.data());
     if (std::all_of(depths.begin(), depths.end(), [](float depth) { return depth == INFINITY; }))
         return kEmptyCell.data();
-    auto out = std::make_unique<float[]>(depths.size());
-    std::copy(depths.begin(), depths.end(), out.get());
-    return out.release();
+    float* made = new float[depths.size()];
+    std::copy(depths.begin(), depths.end(), made);
+    return made;
 }
 
 }  // namespace pentaprism

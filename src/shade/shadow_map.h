@@ -1,6 +1,6 @@
 #pragma once
-// What one light sees: depths at stratified points of texels and times, rendered by the coverage stage with the lens
-// closed, cell by cell when a look-up first asks.
+// What one light sees: depths at stratified points of texels and times, rendered cell by cell (shadow_raster.h) when a
+// look-up first asks.
 //
 // Akenine-Moller, Munkberg, Hasselgren 2007 (shadow maps with a time for each sample). Here a texel has four samples,
 // one for each quarter of the shutter. Resolution follows the receiver: levels of texels of 2^k metres, a virtual map
@@ -12,18 +12,19 @@
 #include <mutex>
 #include <vector>
 
-#include "sample/sample_table.h"
 #include "shade/casters.h"
+#include "shade/shadow_raster.h"
 
 namespace pentaprism {
 
 class ShadowMap {
   public:
-    static constexpr int kSamples = 4;  ///< of a texel: one for each quarter of the shutter
+    static constexpr int kSamples = ShadowSamples::kSamples;
 
-    /// `width`: texels that a level spans, both ways; a power of two. `world`, `frame` and `table` (kSamples, pinhole,
-    /// grouped by motion) must outlive this.
-    ShadowMap(const WorldMotion& world, const Frame& frame, const SampleTable& table, const LightView& view, int width);
+    /// `width`: texels that a level spans, both ways; a power of two. `world`, `frame` and `samples` must outlive
+    /// this.
+    ShadowMap(const WorldMotion& world, const Frame& frame, const ShadowSamples& samples, const LightView& view,
+              int width);
     ~ShadowMap();
     ShadowMap(const ShadowMap&) = delete;
     ShadowMap& operator=(const ShadowMap&) = delete;
@@ -43,11 +44,10 @@ class ShadowMap {
     /// least limit not below that depth; an orthographic view has none.
     int limit_of(float depth) const;
 
-    /// Depths of a cell's samples, arranged as Hits::depth; infinite where nothing is hit before the limit, and perhaps
+    /// Depths of a cell's samples (ShadowSamples); infinite where nothing is hit before the limit, and perhaps
     /// so beyond it. Thread-safe, and the same whoever asks first.
     const float* depths(int exponent, int limit, int cx, int cy) const;
-    /// Where and when these samples lie: the place of the depth at index i is lane i % kLanes of vector i / kLanes.
-    const SampleVector* samples(int cx, int cy) const;
+    const ShadowSamples::Cell& samples(int cx, int cy) const { return samples_.cell(cx, cy); }
 
     std::int64_t cells_rendered() const { return cells_rendered_; }
 
@@ -69,7 +69,8 @@ class ShadowMap {
 
     const WorldMotion& world_;
     const Frame& frame_;
-    const SampleTable& table_;
+    const ShadowSamples& samples_;
+    DrawShadowCell draw_;
     LightView view_;
     int width_, least_exponent_;
     mutable std::once_flag made_;

@@ -43,7 +43,7 @@ Shadows::Shadows(const Frame& frame, const Lighting& lighting, const glm::dvec3&
     maps_.resize(lighting.lights.size());
     if (mode == ShadowMode::kOff || lighting.lights.empty()) return;
     world_ = world_motion(frame, eye, mode == ShadowMode::kStill);
-    table_ = std::make_unique<SampleTable>(ShadowMap::kSamples, 0x5eed, Lens{}, Grouping::kMotion);
+    samples_ = std::make_unique<ShadowSamples>(0x5eed);
     const int width = level_width(frame.view);
     lookup_ = shadow_lookup();
     for (std::size_t i = 0; i < maps_.size(); ++i) {
@@ -62,7 +62,7 @@ Shadows::Shadows(const Frame& frame, const Lighting& lighting, const glm::dvec3&
             view.perspective = !sun;
             view.position = glm::dvec3(maps.position);
             view.axes = faces == 1 ? maps.axes : face_axes(maps.axes, static_cast<int>(face));
-            maps.faces.push_back(std::make_unique<ShadowMap>(world_, frame, *table_, view, width));
+            maps.faces.push_back(std::make_unique<ShadowMap>(world_, frame, *samples_, view, width));
             if (sun) maps.faces.back()->prepare();  // every picture asks for it
         }
     }

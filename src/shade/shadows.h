@@ -33,7 +33,7 @@ class Shadows {
     };
     friend class ShadowsOnTriangle;
     WorldMotion world_;
-    std::unique_ptr<SampleTable> table_;
+    std::unique_ptr<ShadowSamples> samples_;
     std::vector<LightMaps> maps_;
     std::size_t map_count_ = 0;
     ShadowLookup lookup_ = nullptr;

@@ -103,6 +103,11 @@ class EmbreeTracer::Impl {
     };
 
     void build(const EmbreeOptions& options) {
+        if (!frame_.view.has_straight_sight()) {
+            throw Error(ErrorKind::kBackend,
+                        "Embree traces straight rays, which --focus-range, --max-foreground-blur and an animated focus "
+                        "or zoom of a lens do not have");
+        }
         scene_ = rtcNewScene(device_);
         if (!options.for_speed) rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
         rtcSetSceneBuildQuality(scene_, options.fast_build ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM);
@@ -188,15 +193,12 @@ class EmbreeTracer::Impl {
 
     /// Sets up the line of sight of one lane: origin + depth * direction.
     void aim(RTCRay16& ray, int lane, double gx, double gy, double u, double v) const {
-        const Lens& lens = frame_.view.lens;
-        double x = -u * lens.a, y = -v * lens.a, dx = -u * lens.b, dy = -v * lens.b;
-        (frame_.view.perspective ? dx : x) += gx;
-        (frame_.view.perspective ? dy : y) += gy;
-        ray.org_x[lane] = static_cast<float>(x * scale_);
-        ray.org_y[lane] = static_cast<float>(y * scale_);
+        const LineOfSight line = line_of_sight(frame_.view, gx, gy, u, v);
+        ray.org_x[lane] = static_cast<float>(line.origin.x * scale_);
+        ray.org_y[lane] = static_cast<float>(line.origin.y * scale_);
         ray.org_z[lane] = 0.0f;
-        ray.dir_x[lane] = static_cast<float>(dx * scale_);
-        ray.dir_y[lane] = static_cast<float>(dy * scale_);
+        ray.dir_x[lane] = static_cast<float>(line.direction.x * scale_);
+        ray.dir_y[lane] = static_cast<float>(line.direction.y * scale_);
         ray.dir_z[lane] = 1.0f;
     }
 

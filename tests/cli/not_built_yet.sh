@@ -7,10 +7,6 @@ help_of() { "$PENTAPRISM" "$@" --help; }
 while read -r option value; do
     refuses 2 "$option.* is not built yet \(planned: see CHANGELOG\)" render builtin:cubes -o a.exr "$option" $value
 done <<'END'
---focus-range 1,2
---max-foreground-blur 5
---backend gl
---sampler sobol
 END
 for command in view; do
     refuses 2 "$command is not built yet \(planned: see CHANGELOG\)" "$command" some thing --option
@@ -23,7 +19,7 @@ render_help=$(help_of render)
 for option in -r,--resolution -s,--spp --filter --crop --exposure --tonemap --background --camera --focal-length --sensor-width \
     --fstop --lens-radius --focus-distance --focus-object --focus-pixel --aperture-blades --aperture-rotation --aperture-ratio \
     --aperture-roundness \
-    --focus-range --max-foreground-blur --no-defocus --shutter --shutter-position --shutter-curve --rolling-shutter \
+    --focus-range --max-foreground-blur --tilt --swing --aperture-image --cats-eye --no-defocus --shutter --shutter-position --shutter-curve --rolling-shutter \
     --rolling-shutter-duration --motion-segments --no-motion-blur --frame -f,--frames --fps --animation --culling --visibility \
     --backend --shading --sampler --seed -t,--threads --aov --sharp --dataset --stats --samples --overwrite --skip-existing \
     --resume --shard --progress -q,--quiet --log-level -o,--output; do

@@ -3,7 +3,8 @@
 source "$(dirname "$0")/lib.bash"
 small=(-r 96x54 -s 8 --fstop 0.5 --focus-distance 4)
 
-succeeds render builtin:cubes -o one.exr "${small[@]}"
+each=(--shading sample --texture-filter pixel)  # as samples are shaded
+succeeds render builtin:cubes -o one.exr "${small[@]}" "${each[@]}"
 succeeds render builtin:cubes --samples a.5ds "${small[@]}" --stats stats.json
 check "a sample takes 32 bytes" test "$(stat -c %s a.5ds)" -gt $((96 * 54 * 8 * 32)) -a "$(stat -c %s a.5ds)" -lt $((96 * 54 * 8 * 32 + 10000))
 check "statistics name the file" json stats.json 'd["file"] == "a.5ds" and d["samples"] == 96 * 54 * 8'
@@ -13,15 +14,15 @@ succeeds refocus a.5ds -o again.exr
 check "without a word" test ! -s err
 succeeds compare one.exr again.exr --linear --json
 check "as they were they are the picture" json out 'd["max"] < 2e-3'
-succeeds refocus a.5ds -o near.exr --focus-distance 2
+succeeds refocus a.5ds -o near.exr --focus-distance 0.85
 check "the border is spoken of" grep -q 'near.exr: [0-9]* pixels at the border lack' err
-succeeds render builtin:cubes -o direct.exr -r 96x54 -s 8 --fstop 0.5 --focus-distance 2
+succeeds render builtin:cubes -o direct.exr -r 96x54 -s 8 --fstop 0.5 --focus-distance 0.85 "${each[@]}"
 succeeds compare near.exr direct.exr --linear --json
 mv out near.json
 succeeds compare one.exr direct.exr --linear --json
 check "refocused is closer to a direct render than not" python3 -c \
     'import json; assert json.load(open("near.json"))["rmse"] < 0.7 * json.load(open("out"))["rmse"]'
-check "the header tells of both" bash -c 'grep -aq "\"developed\":{\"focus-distance\":2.0}" near.exr && grep -aq "\"spp\":8" near.exr'
+check "the header tells of both" bash -c 'grep -aq "\"developed\":{\"focus-distance\":0.85}" near.exr && grep -aq "\"spp\":8" near.exr'
 succeeds refocus a.5ds -o small.png --fstop 2
 succeeds retime a.5ds -o short.exr --shutter 0.1 --shutter-offset 0.1 --shutter-curve trapezoid:0.2,0.8
 succeeds retime a.5ds -o rolling.exr --shutter 0.1 --rolling-shutter top --rolling-shutter-duration 0.3
@@ -32,6 +33,8 @@ check "sequences of samples resume" test "$(grep -c '"skip"' err)" = 2
 refuses 2 'f.1.5ds: .*seed' render builtin:cubes --samples 'f.#.5ds' -f 1-3 "${small[@]}" --seed 1 --resume
 
 refuses 2 '--fstop 0.4: the samples were rendered at 0.5' refocus a.5ds -o bad.exr --fstop 0.4
+succeeds render builtin:cubes --samples t.5ds "${small[@]}" --tilt 5
+refuses 2 'rendered with --focus-range, --max' refocus t.5ds -o bad.exr --focus-distance 2
 refuses 2 '--focus-distance: 0 is not above 0' refocus a.5ds -o bad.exr --focus-distance 0
 refuses 2 "--focus-distance: 'near' is not a number" refocus a.5ds -o bad.exr --focus-distance near
 refuses 2 '--shutter: 0.6 frames' retime a.5ds -o bad.exr --shutter 0.6

@@ -54,6 +54,17 @@ done <<'END'
 --aperture-blades -3 --aperture-blades
 --aperture-rotation x --aperture-rotation
 --aperture-ratio 0 --aperture-ratio
+--focus-range 5,2 --focus-range 5,2: the nearest depth comes first
+--focus-range 3 --focus-range.*NEAR,FAR
+--focus-range 0,2 --focus-range: 0 is not above 0
+--focus-range 1,nan --focus-range
+--max-foreground-blur -1 --max-foreground-blur
+--tilt 90 --tilt: 90 is not from -89 to 89
+--swing nan --swing
+--cats-eye 1.6 --cats-eye: 1.6 is not from 0 to 1.5
+--aperture-image none.png --aperture-image none.png
+--aperture-image lens.jpg --aperture-image lens.jpg: only .exr and .png
+--sampler halton --sampler: 'halton' is not one of stratified, sobol, blue-noise, independent
 --aperture-roundness 1.1 --aperture-roundness: 1.1 is not from 0 to 1
 --shutter -0.5 --shutter
 --shutter 1e999 --shutter

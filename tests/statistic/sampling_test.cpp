@@ -1,7 +1,4 @@
 // How well the sample pattern integrates what it is for: an edge that moves, an edge out of focus, and both.
-//
-// The integrand of a pixel is whether an edge at `a` is to the right of the sample: x + L*t + R*u < a. x lies on a
-// lattice of 1/256, and the exact answers count it so.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -9,56 +6,16 @@
 #include <numbers>
 #include <vector>
 
-#include "sample/sample_table.h"
+#include "support/edges.h"
 
 namespace pentaprism {
 namespace {
 
-struct Edge {
-    const char* name;
-    double motion, blur;  // L, R in pixels
-    bool seen_by(const SamplePoint& s, double a) const { return s.x + motion * s.t + blur * s.u < a; }
-};
-constexpr Edge kEdges[] = {{"still", 0, 0}, {"moving", 6, 0}, {"out of focus", 0, 4}, {"both", 6, 4}};
-
-// Part of the unit disk with u < s.
-double part_of_disk(double s) {
-    if (s <= -1) return 0;
-    if (s >= 1) return 1;
-    return 0.5 + (s * std::sqrt(1 - s * s) + std::asin(s)) / std::numbers::pi;
-}
-
-// Its integral from -1 to s.
-double integral_of_part(double s) {
-    if (s <= -1) return 0;
-    if (s >= 1) return s;
-    const double root = std::sqrt(1 - s * s);
-    return 0.5 * s + (s * std::asin(s) + root - root * root * root / 3) / std::numbers::pi;
-}
-
-double exact(const Edge& edge, double a) {
-    double sum = 0;
-    for (int k = 0; k < 256; ++k) {
-        const double b = a - k / 256.0;  // L*t + R*u < b
-        const double L = edge.motion, R = edge.blur;
-        if (L == 0 && R == 0) sum += b > 0;
-        if (L > 0 && R == 0) sum += std::clamp(b / L, 0.0, 1.0);
-        if (L == 0 && R > 0) sum += part_of_disk(b / R);
-        if (L > 0 && R > 0) sum += (integral_of_part(b / R) - integral_of_part((b - L) / R)) * R / L;
-    }
-    return sum / 256;
-}
-
-double estimate(const SampleTable& table, const Edge& edge, int px, int py, double a) {
-    int seen = 0;
-    for (int i = 0; i < table.spp(); ++i) seen += edge.seen_by(table.sample(px, py, i), a);
-    return static_cast<double>(seen) / table.spp();
-}
-
-// Evenly spread over [0, 1).
-double golden(int n) {
-    return std::fmod((n + 1) * 0.6180339887498949, 1.0);
-}
+using support::Edge;
+using support::estimate;
+using support::exact;
+using support::golden;
+using support::kEdges;
 
 // Root mean square error over 64x64 pixels, each with the edge somewhere else.
 double rmse(const Edge& edge, int spp) {

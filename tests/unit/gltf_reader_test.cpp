@@ -259,6 +259,54 @@ TEST_F(GltfReader, ThePhysicalCameraExtensionComesBeforeExtras) {
     EXPECT_DOUBLE_EQ(lens.focus_distance.value(), 4.0);
 }
 
+TEST_F(GltfReader, PassesOverALensInExtrasThatIsNone) {
+    file.json["cameras"] = json::array({{{"type", "perspective"},
+                                         {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}},
+                                         {"extras", {{"focusRange", {3, 2}}, {"tilt", 95}, {"catsEye", -1}}}}});
+    file.node({{"camera", 0}, {"extras", {{"focusRange", {1.5, 2}}, {"tilt", 30}}}});
+    const Scene scene = load();
+    EXPECT_EQ(scene.cameras[0].lens.focus_range, (std::array<double, 2>{1.5, 2.0})) << "the node's";
+    EXPECT_EQ(scene.cameras[0].lens.tilt_deg, 30.0);
+    EXPECT_FALSE(scene.cameras[0].lens.cats_eye.has_value());
+    for (const char* key : {"focusRange", "tilt", "catsEye"}) EXPECT_TRUE(mentions(scene.warnings, key)) << key;
+}
+
+TEST_F(GltfReader, PointersMoveNodesAndCameras) {
+    file.json["cameras"] = json::array({{{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}}});
+    file.node({{"camera", 0}});
+    file.json["extensionsUsed"] = {"KHR_animation_pointer"};
+    const int times = file.floats("SCALAR", {0, 1}), one = file.floats("SCALAR", {0.5f, 1.5f}),
+              three = file.floats("VEC3", {0, 0, 0, 1, 2, 3});
+    const json samplers = json::array({{{"input", times}, {"output", one}}, {{"input", times}, {"output", three}}});
+    const auto channel = [](int sampler, const char* pointer) {
+        return json{
+            {"sampler", sampler},
+            {"target", {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}}}};
+    };
+    file.json["animations"] = json::array(
+        {{{"samplers", samplers},
+          {"channels",
+           json::array({channel(0, "/cameras/0/perspective/yfov"), channel(0, "/nodes/0/extras/focusDistance"),
+                        channel(1, "/nodes/0/translation"), channel(0, "/cameras/1/perspective/yfov"),
+                        channel(0, "/materials/0/pbrMetallicRoughness/metallicFactor"),
+                        channel(0, "/cameras/00x/perspective/yfov"), channel(0, "")})}}});
+    const Scene scene = load();
+    const std::vector<Channel>& channels = scene.animations[0].channels;
+    ASSERT_EQ(channels.size(), 3u);
+    EXPECT_EQ(channels[0].path, ChannelPath::kYfov);
+    EXPECT_EQ(channels[0].camera, 0);
+    EXPECT_EQ(channels[1].path, ChannelPath::kFocusDistance);
+    EXPECT_EQ(channels[1].camera, 0);
+    EXPECT_EQ(channels[2].path, ChannelPath::kTranslation);
+    EXPECT_EQ(channels[2].node, 0);
+    EXPECT_TRUE(mentions(scene.warnings, "moves /materials/0"));
+    EXPECT_TRUE(mentions(scene.warnings, "moves /cameras/1"));
+    const Pose pose = evaluate(scene, choose_animations(scene, "all"), 0.5);
+    EXPECT_DOUBLE_EQ(camera_at(scene, pose, 0).yfov, 1.0);
+    EXPECT_DOUBLE_EQ(camera_at(scene, pose, 0).lens.focus_distance.value(), 1.0);
+    EXPECT_EQ(scene.cameras[0].yfov, 0.7) << "the scene stays as it is";
+}
+
 TEST_F(GltfReader, OnlyRequiredExtensionsAreRefused) {
     file.triangle();
     file.json["extensionsUsed"] = {"KHR_materials_iridescence"};

@@ -125,6 +125,11 @@ Scene one_of_everything() {
     lens.lens.aperture_rotation_deg = 12.5;
     lens.lens.aperture_ratio = 1.8;
     lens.lens.aperture_blades = 6;
+    lens.lens.focus_range = {0.4, 0.9};
+    lens.lens.max_foreground_blur = 7.5;
+    lens.lens.tilt_deg = -20.0;
+    lens.lens.swing_deg = 5.0;
+    lens.lens.cats_eye = 0.5;
     Camera flat;
     flat.name = "plan";
     flat.perspective = false;
@@ -143,18 +148,27 @@ Scene one_of_everything() {
     scene.lights = {sun, lamp, torch};
 
     Animation shot{"shot", {}, 2.0};
+    shot.channels.push_back({0,
+                             kNone,
+                             ChannelPath::kTranslation,
+                             Interpolation::kLinear,
+                             3,
+                             {0.0f, 2.0f},
+                             {1.0f, -2.0f, 0.1f, 4.0f, 5.0f, 6.0f}});
     shot.channels.push_back(
-        {0, ChannelPath::kTranslation, Interpolation::kLinear, 3, {0.0f, 2.0f}, {1.0f, -2.0f, 0.1f, 4.0f, 5.0f, 6.0f}});
+        {0, kNone, ChannelPath::kScale, Interpolation::kStep, 3, {0.0f, 2.0f}, {1.0f, 2.0f, 0.5f, 4.0f, 5.0f, 6.0f}});
     shot.channels.push_back(
-        {0, ChannelPath::kScale, Interpolation::kStep, 3, {0.0f, 2.0f}, {1.0f, 2.0f, 0.5f, 4.0f, 5.0f, 6.0f}});
+        {3, kNone, ChannelPath::kRotation, Interpolation::kCubicSpline, 4, {0.0f, 1.0f}, {0.0f, 0.0f, 0.0f, 0.0f, 0.0f,
+                                                                                          0.0f, 0.0f, 1.0f, 0.1f, 0.0f,
+                                                                                          0.0f, 0.0f, 0.2f, 0.0f, 0.0f,
+                                                                                          0.0f, 0.0f, 1.0f, 0.0f, 0.0f,
+                                                                                          0.0f, 0.0f, 0.0f, 0.0f}});
     shot.channels.push_back(
-        {3, ChannelPath::kRotation, Interpolation::kCubicSpline, 4, {0.0f, 1.0f}, {0.0f, 0.0f, 0.0f, 0.0f, 0.0f,
-                                                                                   0.0f, 0.0f, 1.0f, 0.1f, 0.0f,
-                                                                                   0.0f, 0.0f, 0.2f, 0.0f, 0.0f,
-                                                                                   0.0f, 0.0f, 1.0f, 0.0f, 0.0f,
-                                                                                   0.0f, 0.0f, 0.0f, 0.0f}});
+        {4, kNone, ChannelPath::kWeights, Interpolation::kLinear, 2, {0.0f, 1.0f}, {0.0f, 1.0f, 0.5f, 0.25f}});
+    shot.channels.push_back({kNone, 0, ChannelPath::kYfov, Interpolation::kLinear, 1, {0.0f, 1.0f}, {0.6f, 0.3f}});
     shot.channels.push_back(
-        {4, ChannelPath::kWeights, Interpolation::kLinear, 2, {0.0f, 1.0f}, {0.0f, 1.0f, 0.5f, 0.25f}});
+        {kNone, 0, ChannelPath::kFocusDistance, Interpolation::kStep, 1, {0.0f, 1.0f}, {2.0f, 3.5f}});
+    shot.channels.push_back({kNone, 0, ChannelPath::kFstop, Interpolation::kLinear, 1, {0.0f, 1.0f}, {2.0f, 4.0f}});
     scene.animations = {shot};
     return scene;
 }
@@ -304,6 +318,11 @@ TEST_F(GltfWriter, KeepsCamerasWithLensAndShutter) {
         EXPECT_EQ(a.lens.aperture_blades, b.lens.aperture_blades);
         EXPECT_EQ(a.lens.aperture_rotation_deg, b.lens.aperture_rotation_deg);
         EXPECT_EQ(a.lens.aperture_ratio, b.lens.aperture_ratio);
+        EXPECT_EQ(a.lens.focus_range, b.lens.focus_range);
+        EXPECT_EQ(a.lens.max_foreground_blur, b.lens.max_foreground_blur);
+        EXPECT_EQ(a.lens.tilt_deg, b.lens.tilt_deg);
+        EXPECT_EQ(a.lens.swing_deg, b.lens.swing_deg);
+        EXPECT_EQ(a.lens.cats_eye, b.lens.cats_eye);
     }
 }
 
@@ -331,6 +350,7 @@ TEST_F(GltfWriter, KeepsAnimationsKeyForKey) {
     for (std::size_t i = 0; i < scene.animations[0].channels.size(); ++i) {
         const Channel &a = scene.animations[0].channels[i], &b = read.animations[0].channels[i];
         EXPECT_EQ(a.node, b.node);
+        EXPECT_EQ(a.camera, b.camera);
         EXPECT_EQ(a.path, b.path);
         EXPECT_EQ(a.interpolation, b.interpolation);
         EXPECT_EQ(a.width, b.width);

@@ -1,0 +1,43 @@
+#include "gl/rasterizer.h"
+
+#include <pentaprism/error.h>
+
+#ifdef PENTAPRISM_HAVE_GL
+#include "gl/device.h"
+#include "gl/gl_rasterizer.h"
+#endif
+
+namespace pentaprism {
+
+#ifdef PENTAPRISM_HAVE_GL
+
+std::unique_ptr<const Rasterizer> make_gl_rasterizer(const Frame& frame, const SampleTable& table,
+                                                     const std::string& culling, const PixelRect& limits) {
+    return std::make_unique<const gl::GlRasterizer>(frame, table, culling, limits);
+}
+
+std::string gl_device_name() {
+    return gl::Device::get().name();
+}
+
+#else
+
+namespace {
+[[noreturn]] void refuse() {
+    throw Error(ErrorKind::kBackend,
+                "--backend gl: this build has no OpenGL; install libepoxy-dev and libegl-dev and build again");
+}
+}  // namespace
+
+std::unique_ptr<const Rasterizer> make_gl_rasterizer(const Frame&, const SampleTable&, const std::string&,
+                                                     const PixelRect&) {
+    refuse();
+}
+
+std::string gl_device_name() {
+    refuse();
+}
+
+#endif
+
+}  // namespace pentaprism

@@ -1,0 +1,31 @@
+#pragma once
+// Visibility on a graphics card: the same frame, the same samples and the same exact test as the coverage stage, in
+// OpenGL (gl/gl_rasterizer.h). A build may be without it.
+
+#include <memory>
+#include <string>
+
+#include "bound/screen_bounds.h"
+#include "cover/cover.h"
+
+namespace pentaprism {
+
+class Rasterizer {
+  public:
+    virtual ~Rasterizer() = default;
+
+    /// As cover_with_test(): hits, counts and map of a tile. `hits` has been reset. Thread-safe; the pixels around are
+    /// rendered with the first tile that asks, while others wait.
+    virtual void cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map) const = 0;
+};
+
+/// `culling`: as `--culling` takes it. `limits`: the pixels that will be asked for. Frame and table must outlive it.
+/// Throws Error(kBackend) in a build without OpenGL, without a driver and when it fails, Error(kUsage) for culling that
+/// is not there in GLSL.
+std::unique_ptr<const Rasterizer> make_gl_rasterizer(const Frame& frame, const SampleTable& table,
+                                                     const std::string& culling, const PixelRect& limits);
+
+/// Renderer and version of the driver; throws as make_gl_rasterizer().
+std::string gl_device_name();
+
+}  // namespace pentaprism

@@ -1,0 +1,51 @@
+#pragma once
+// Depths of a cell of a shadow map: the exact test of cover/exact.h with the lens closed, at all samples of the texels
+// that a triangle's box holds, sixteen at a time.
+//
+// The camera's coverage stage (cover/cover_vectors.cpp) pays for bounds over lens and shutter, for work lists and depth
+// hierarchies. Here most triangles are about a texel, and testing the few samples around them costs less than knowing
+// which to leave out.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "sample/sample_table.h"
+#include "shade/casters.h"
+
+namespace pentaprism {
+
+/// Where and when a map's samples lie: four in each texel, one in each quarter of the shutter: those of SampleTable in
+/// another order. Index in a cell: (row * kCellSize + column) * kSamples + quarter.
+class ShadowSamples {
+  public:
+    static constexpr int kSamples = 4, kPerCell = kCellSize * kCellSize * kSamples;
+    struct alignas(64) Cell {
+        float x[kPerCell], y[kPerCell], t[kPerCell];  ///< texels from the cell's middle, y up; t in [0, 1)
+    };
+    explicit ShadowSamples(std::uint32_t seed);
+    const Cell& cell(int cx, int cy) const { return cells_[index_of(cx, cy)]; }
+
+  private:
+    std::size_t index_of(int cx, int cy) const;
+
+    static constexpr int kPeriod = 4;  // cells, both ways
+    std::uint32_t seed_;
+    std::unique_ptr<Cell[]> cells_;
+};
+
+/// A cell of a level and what may be seen in it.
+struct ShadowCellWork {
+    const Casters& casters;
+    std::span<const std::uint32_t> list;  ///< into Casters::boxes, in any order
+    const ShadowSamples::Cell& samples;
+    int cx, cy, width;  ///< the cell, and how many texels the level spans
+    float scale;        ///< texels a unit of the casters' x and y; a power of two
+};
+
+/// Writes the depth of what is nearest at each of the cell's samples, infinity where nothing is. `depths`: kPerCell of
+/// them, on a cache line. The same bits on every CPU target.
+using DrawShadowCell = void (*)(const ShadowCellWork& work, float* depths);
+DrawShadowCell draw_shadow_cell();
+
+}  // namespace pentaprism
