@@ -90,6 +90,10 @@ class Renderer {
     void render_shard(const RenderSettings& settings, double frame, const Shard& shard, const FileMetadata& metadata,
                       ByteSink& out, RenderStats& stats, const Progress& progress = {});
 
+    /// A frame's samples, as bytes that StoredSamples (pentaprism/stored_samples.h) makes pictures of: 32 for each.
+    void render_samples(const RenderSettings& settings, double frame, const FileMetadata& metadata, ByteSink& out,
+                        RenderStats& stats, const Progress& progress = {});
+
   private:
     void run(const RenderSettings& settings, double frame, RenderStats& stats,
              const std::function<void(FrameTiles&)>& body);

@@ -18,6 +18,10 @@ void add_planned_value(CLI::App& command, const std::string& group, const std::s
                        const std::string& description);
 [[noreturn]] void refuse_as_planned(const std::string& what);
 
+/// Values of --shutter-curve and --rolling-shutter.
+std::vector<ShutterPoint> parse_shutter_curve(const std::string& text);
+RollingShutter parse_rolling_shutter(const std::string& text);
+
 void add_scene_argument(CLI::App& command, std::string& scene);
 
 /// Groups image, camera, lens, shutter, animation and method. `settings` must outlive the parsing.

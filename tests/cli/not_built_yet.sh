@@ -7,7 +7,6 @@ help_of() { "$PENTAPRISM" "$@" --help; }
 while read -r option value; do
     refuses 2 "$option.* is not built yet \(planned: see CHANGELOG\)" render builtin:cubes -o a.exr "$option" $value
 done <<'END'
---samples dump
 END
 for command in view; do
     refuses 2 "$command is not built yet \(planned: see CHANGELOG\)" "$command" some thing --option
