@@ -193,11 +193,9 @@ void add_method_options(CLI::App& command, MethodSettings& method) {
                                                       {"raytrace", VisibilityMethod::kRaytrace},
                                                       {"micropolygon", VisibilityMethod::kMicropolygon}});
               });
-    add_value(
-        command, group, "--backend", "cpu|gl",
-        "What finds visible surfaces: the processor, or OpenGL 4.5 (default cpu)", [&](const std::string& text) {
-            method.backend = parse_choice<Backend>("--backend", text, {{"cpu", Backend::kCpu}, {"gl", Backend::kGl}});
-        });
+    add_value(command, group, "--backend", "cpu|gl",
+              "What finds visible surfaces: the processor, or OpenGL 4.5 (default cpu)",
+              [&](const std::string& text) { method.backend = parse_backend(text); });
     add_value(command, group, "--shading", "pixel|sample|decoupled",
               "How often visible surfaces are shaded (default pixel)", [&](const std::string& text) {
                   method.shading = parse_choice<std::string>(
@@ -237,6 +235,10 @@ void add_method_options(CLI::App& command, MethodSettings& method) {
 CLI::Option* add_value(CLI::App& command, const std::string& group, const std::string& names, const std::string& form,
                        const std::string& description, std::function<void(const std::string&)> take) {
     return command.add_option_function<std::string>(names, std::move(take), description)->type_name(form)->group(group);
+}
+
+Backend parse_backend(const std::string& text) {
+    return parse_choice<Backend>("--backend", text, {{"cpu", Backend::kCpu}, {"gl", Backend::kGl}});
 }
 
 void refuse_as_planned(const std::string& what) {

@@ -20,6 +20,8 @@ void add_planned_flag(CLI::App& command, const std::string& group, const std::st
                       const std::string& description);
 [[noreturn]] void refuse_as_planned(const std::string& what);
 
+Backend parse_backend(const std::string& text);
+
 void add_scene_argument(CLI::App& command, std::string& scene);
 
 /// Groups image, camera, lens, shutter, animation and method. `settings` must outlive the parsing.

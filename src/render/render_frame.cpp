@@ -210,6 +210,7 @@ void Renderer::render(const RenderSettings& settings, double number, RowSink& si
     stats = {};
     stats.isa = isa_name(cpu_isa());
     stats.threads = thread_count();
+    if (settings.method.backend == Backend::kGl) stats.device = gl_device_name();
 
     if (settings.image.environment != environment_name_) {
         environment_ = settings.image.environment.empty() ? nullptr : load_environment(settings.image.environment);

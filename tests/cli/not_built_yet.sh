@@ -9,7 +9,6 @@ while read -r option value; do
 done <<'END'
 --focus-range 1,2
 --max-foreground-blur 5
---backend gl
 --sampler sobol
 --aov depth,albedo
 --aov ste
