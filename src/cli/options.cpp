@@ -195,11 +195,9 @@ void add_method_options(CLI::App& command, MethodSettings& method) {
                                                       {"raytrace", VisibilityMethod::kRaytrace},
                                                       {"micropolygon", VisibilityMethod::kMicropolygon}});
               });
-    add_value(
-        command, group, "--backend", "cpu|gl",
-        "What finds visible surfaces: the processor, or OpenGL 4.5 (default cpu)", [&](const std::string& text) {
-            method.backend = parse_choice<Backend>("--backend", text, {{"cpu", Backend::kCpu}, {"gl", Backend::kGl}});
-        });
+    add_value(command, group, "--backend", "cpu|gl",
+              "What finds visible surfaces: the processor, or OpenGL 4.5 (default cpu)",
+              [&](const std::string& text) { method.backend = parse_backend(text); });
     add_value(command, group, "--shading", "pixel|sample|decoupled",
               "How often visible surfaces are shaded (default decoupled)", [&](const std::string& text) {
                   method.shading = parse_choice<std::string>(
@@ -263,6 +261,10 @@ RollingShutter parse_rolling_shutter(const std::string& text) {
                                          {"bottom", RollingShutter::kBottom},
                                          {"left", RollingShutter::kLeft},
                                          {"right", RollingShutter::kRight}});
+}
+
+Backend parse_backend(const std::string& text) {
+    return parse_choice<Backend>("--backend", text, {{"cpu", Backend::kCpu}, {"gl", Backend::kGl}});
 }
 
 void refuse_as_planned(const std::string& what) {

@@ -21,6 +21,7 @@ void add_planned_value(CLI::App& command, const std::string& group, const std::s
 /// Values of --shutter-curve and --rolling-shutter.
 std::vector<ShutterPoint> parse_shutter_curve(const std::string& text);
 RollingShutter parse_rolling_shutter(const std::string& text);
+Backend parse_backend(const std::string& text);
 
 void add_scene_argument(CLI::App& command, std::string& scene);
 

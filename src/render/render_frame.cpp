@@ -68,6 +68,7 @@ void Renderer::run(const RenderSettings& settings, double number, RenderStats& s
     stats.peak_mb = peak_megabytes();
     stats.threads = thread_count();
     stats.isa = isa_name(cpu_isa());
+    if (settings.method.backend == Backend::kGl) stats.device = gl_device_name();
 }
 
 void Renderer::render(const RenderSettings& settings, double number, RowSink& sink, RenderStats& stats,
