@@ -271,12 +271,6 @@ void refuse_as_planned(const std::string& what) {
     throw Error(ErrorKind::kUsage, what + " is not built yet (planned: see CHANGELOG)");
 }
 
-void add_planned_value(CLI::App& command, const std::string& group, const std::string& name, const std::string& form,
-                       const std::string& description) {
-    add_value(command, group, name, form, description + " (not built yet)",
-              [name](const std::string&) { refuse_as_planned(name); });
-}
-
 void add_scene_argument(CLI::App& command, std::string& scene) {
     command.add_option("SCENE", scene, "A .gltf, .glb or .obj file, or builtin:NAME (see `pentaprism scene --list`)")
         ->required()

@@ -11,6 +11,7 @@
 #include "base/cpu.h"
 #include "base/parallel.h"
 #include "base/pool.h"
+#include "gl/rasterizer.h"
 #include "render/frame_tiles.h"
 #include "render/picture_rows.h"
 #include "render/shard_stream.h"
