@@ -102,14 +102,21 @@ bool is_usable(const MovingTriangle& m) {
     return usable;
 }
 
-void take(const ScreenBox& box, std::uint32_t triangle, int segment, bool perspective, std::vector<Casters::Box>& out) {
+// Appends the box if something of it is in view.
+void take(const ScreenBox& box, bool perspective, Casters::Box like, std::vector<Casters::Box>& out) {
     if (box.empty()) return;
     if (perspective &&
         (box.x0 > kWidestTangent || box.x1 < -kWidestTangent || box.y0 > kWidestTangent || box.y1 < -kWidestTangent))
         return;
-    out.push_back({outward(box.x0, -INFINITY), outward(box.x1, INFINITY), outward(box.y0, -INFINITY),
-                   outward(box.y1, INFINITY), static_cast<float>(box.nearest_w), triangle,
-                   static_cast<std::uint16_t>(segment)});
+    like.x0 = outward(box.x0, -INFINITY), like.x1 = outward(box.x1, INFINITY);
+    like.y0 = outward(box.y0, -INFINITY), like.y1 = outward(box.y1, INFINITY);
+    out.push_back(like);
+}
+
+// A little before the nearest of the triangle's depths, as rounding may put a sample there.
+float nearest_depth(float nearest, float farthest) {
+    constexpr float kMargin = 32.0f / 16777216.0f;
+    return nearest - kMargin * std::max(std::abs(nearest), std::abs(farthest));
 }
 
 // Points of a part on the light's picture, for boxes of triangles that are wholly before the light: with the lens
@@ -122,8 +129,9 @@ class SeenPoints {
         seen_.resize(count);
         for (std::size_t i = 0; i < count; ++i) {
             const glm::vec4& p = frame.points[part.first_point + i];
-            const float inverse = 1.0f / p.z, depth = frame.view.perspective ? p.z : frame.depths[part.first_point + i];
-            seen_[i] = {p.x * inverse, p.y * inverse, p.z};
+            const float inverse = 1.0f / p.z;
+            const float depth = frame.view.perspective ? p.z : frame.depths[part.first_point + i];
+            seen_[i] = {p.x * inverse, p.y * inverse, p.z, depth};
             simple_ = simple_ && p.z >= kNear && std::abs(p.x) <= kLargest && std::abs(p.y) <= kLargest &&
                       std::abs(depth) <= kLargest;
         }
@@ -131,18 +139,21 @@ class SeenPoints {
     /// Whether box() may be asked.
     bool simple() const { return simple_; }
 
-    ScreenBox box(std::uint32_t triangle, int segment) const {
-        float x0 = INFINITY, x1 = -INFINITY, y0 = INFINITY, y1 = -INFINITY, nearest = INFINITY, farthest = 0.0f;
+    ScreenBox box(std::uint32_t triangle, int segment, float& nearest_depth_of_it) const {
+        float least = INFINITY, most = -INFINITY, x0 = INFINITY, x1 = -INFINITY, y0 = INFINITY, y1 = -INFINITY,
+              nearest = INFINITY, farthest = 0.0f;
         for (int k = 0; k < 3; ++k) {
             std::size_t at = frame_.corners[3 * std::size_t{triangle} + k] - part_.first_point +
                              static_cast<std::size_t>(segment) * part_.vertex_count;
             for (int end = 0; end < (part_.moves ? 2 : 1); ++end, at += part_.vertex_count) {
-                const glm::vec3& p = seen_[at];
+                const glm::vec4& p = seen_[at];
                 x0 = std::min(x0, p.x), x1 = std::max(x1, p.x);
                 y0 = std::min(y0, p.y), y1 = std::max(y1, p.y);
                 nearest = std::min(nearest, p.z), farthest = std::max(farthest, p.z);
+                least = std::min(least, p.w), most = std::max(most, p.w);
             }
         }
+        nearest_depth_of_it = nearest_depth(least, most);
         // As in screen_bounds(), where |x| <= w * reach; a quarter more for the divisions here.
         constexpr float kUnitRoundoff = 1.0f / 16777216.0f;
         const float slack = 20.0f * kUnitRoundoff * farthest / nearest;
@@ -154,7 +165,7 @@ class SeenPoints {
   private:
     const Frame& frame_;
     const Part& part_;
-    std::vector<glm::vec3> seen_;  // x, y; w
+    std::vector<glm::vec4> seen_;  // x, y; w, depth
     bool simple_ = true;
 };
 
@@ -163,14 +174,20 @@ void bound_part(const Frame& frame, const Part& part, std::vector<Casters::Box>&
     const bool perspective = frame.view.perspective;
     for (std::uint32_t triangle = part.first_triangle; triangle < part.first_triangle + part.triangle_count;
          ++triangle) {
-        if (opacity_class(frame, triangle) == OpacityClass::kClear) continue;
+        const OpacityClass opacity = opacity_class(frame, triangle);
+        if (opacity == OpacityClass::kClear) continue;
         for (int segment = 0; segment < (part.moves ? part.segments : 1); ++segment) {
+            Casters::Box box{
+                0, 0, 0, 0, 0, triangle, static_cast<std::uint16_t>(segment), opacity == OpacityClass::kMixed};
             if (seen.simple()) {
-                take(seen.box(triangle, segment), triangle, segment, perspective, out);
+                take(seen.box(triangle, segment, box.nearest), perspective, box, out);
                 continue;
             }
             const MovingTriangle m = moving_triangle(frame, triangle, segment);
-            if (is_usable(m)) take(screen_bounds(m, frame.view.w_near(), 1.0), triangle, segment, perspective, out);
+            if (!is_usable(m)) continue;
+            const auto [least, most] = std::minmax_element(&m.z[0][0], &m.z[0][0] + 6);
+            box.nearest = nearest_depth(*least, *most);
+            take(screen_bounds(m, frame.view.w_near(), 1.0), perspective, box, out);
         }
     }
 }

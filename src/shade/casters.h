@@ -23,9 +23,11 @@ inline constexpr float kWidestTangent = 1.5f;
 struct Casters {
     /// One motion segment of one triangle in the light's view: metres or tangents, y up.
     struct Box {
-        float x0, x1, y0, y1, nearest;
+        float x0, x1, y0, y1;
+        float nearest;  ///< no sample sees it at a smaller depth
         std::uint32_t triangle;
         std::uint16_t segment;
+        bool mixed;  ///< its opacity is to be asked: OpacityClass::kMixed
     };
     Frame frame;  ///< x and y in metres or tangents; parts out of view are left out, so triangles have other numbers
     std::vector<Box> boxes;

@@ -1,7 +1,6 @@
 #include "shade/shade_tile.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "bound/local_triangle.h"
@@ -16,6 +15,10 @@ constexpr int kSamplesPerChunk = 1 << 16;
 constexpr int kQuarters = QuarterColors::kQuarters;
 constexpr int kLookups = ShadowPoint::kLanes / kQuarters;  // of a quarter
 constexpr float kBrightest = 0x1p20f;
+
+// Of four bits, how many are set. (The processor's own instruction is a call where the build does not assume it.)
+constexpr float kShareOfBits[16] = {0.0f,  0.25f, 0.25f, 0.5f,  0.25f, 0.5f,  0.5f,  0.75f,
+                                    0.25f, 0.5f,  0.5f,  0.75f, 0.5f,  0.75f, 0.75f, 1.0f};
 
 glm::vec4 contained(const glm::vec3& color) {
     const auto one = [](float x) { return std::isfinite(x) ? std::clamp(x, 0.0f, kBrightest) : 0.0f; };
@@ -76,6 +79,7 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
     const SampleVector* vectors = samples.cell(tile.cell_x(), tile.cell_y(), room_).data();
     seen_.start(scene.frame(), cell_centre(scene.frame().view, tile.cell_x(), tile.cell_y()), vectors);
 
+    // Of what does not blur, pixels are the cells; there the mean of the samples is better than the middle.
     const bool in_cells = scene.options().rate == ShadingRate::kDecoupled;
     const int blocks_per_chunk = std::max(1, kSamplesPerChunk / (kLanes * samples.slots()));
     for (int block = 0; block < kBlocksPerCell; block += blocks_per_chunk) {
@@ -85,9 +89,10 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
             const std::uint32_t triangle = samples_.triangle(i);
             const ShadedTriangle shaded(scene, triangle);
             const Run run{shaded, triangle, samples_.places(i), samples_.pixels(i)};
-            seen_.see(triangle, run.places, in_cells ? &shaded.cells() : nullptr);
+            const bool cells = in_cells && !shaded.is_sharp();
+            seen_.see(triangle, run.places, cells ? &shaded.cells() : nullptr);
             shadows_.start(scene.shadows(), triangle);
-            if (in_cells) {
+            if (cells) {
                 find_cells(run, out);
                 shade_cells(run, out);
             } else {
@@ -184,12 +189,10 @@ void TileShader::light_quarters(const QuarterColors& colors, std::uint32_t seed,
         for (const LitColor::Share& share : lit_.shadowed) {
             shadow_point_.offset = share.offset;
             const std::uint32_t lit = shadows_.lit(share.light, shadow_point_, seed + 8 * share.light);
-            if (!by_quarters_) {
-                color[0] += share.color * (static_cast<float>(std::popcount(lit)) / ShadowPoint::kLanes);
-                continue;
-            }
-            for (int q = 0; q < kQuarters; ++q)
-                color[q] += share.color * (static_cast<float>(std::popcount(lit >> kLookups * q & 15u)) / kLookups);
+            float part[kQuarters];
+            for (int q = 0; q < kQuarters; ++q) part[q] = kShareOfBits[lit >> kLookups * q & 15u];
+            if (!by_quarters_) part[0] = 0.25f * (part[0] + part[1] + part[2] + part[3]);
+            for (int q = 0; q < kQuarters; ++q) color[q] += part[q] * share.color;
         }
     }
     for (int q = 0; q < kQuarters; ++q)

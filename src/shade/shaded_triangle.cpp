@@ -89,8 +89,14 @@ void ShadedTriangle::project(std::uint32_t triangle) {
     projection_.by_1 = scale * glm::dvec3(rows[0].z, rows[1].z, rows[2].z);
 }
 
-// One evaluation stands for all samples of its pixel: it is filtered over the pixel (variance 1/12 each way), over the
-// whole shutter (1/12) and over the lens disk (1/4 each way).
+bool ShadedTriangle::is_sharp() const {
+    bool sharp = true;
+    for (int i = 0; i < 3; ++i) sharp = sharp && projection_.motion[i] == glm::dvec3(0.0) && projection_.coc[i] == 0.0;
+    return sharp;
+}
+
+// One evaluation is filtered over its cell (variance 1/12 each way) and over its share of the shutter (1/12) and of the
+// lens disk (1/4 each way).
 TextureFootprint ShadedTriangle::footprint(const glm::vec3& barycentrics, int set, const ShadingCell& cell) const {
     const std::vector<glm::vec2>& uvs = part_.primitive->texcoords[set];
     if (uvs.empty()) return {};
@@ -116,13 +122,10 @@ TextureFootprint ShadedTriangle::footprint(const glm::vec3& barycentrics, int se
     const float ratio = static_cast<float>(frame.view.lens.ratio);
 
     TextureFootprint footprint;
-    const ShadingOptions& options = scene_.options();
     footprint.add(by_x * cell.along.x + by_y * cell.along.y, 1.0f / 12.0f);
     footprint.add(by_x * cell.across.x + by_y * cell.across.y, 1.0f / 12.0f);
-    if (options.texture_filter == TextureFilter::kPixel) return footprint;
-    // Where each sample picks its own evaluation, the samples average over motion and lens themselves; each stands for
-    // the share of the blur that falls to it, of width N^-0.4 (measured; four dimensions would say -0.25 to -0.5).
-    const float share = options.rate == ShadingRate::kPixel ? 1.0f : std::pow(static_cast<float>(options.spp), -0.8f);
+    if (scene_.options().texture_filter == TextureFilter::kPixel) return footprint;
+    const float share = scene_.blur_share();
     const float lens = 0.25f * coc * coc * share;
     footprint.add(by_x, lens);
     footprint.add(by_y, lens * ratio * ratio);

@@ -37,6 +37,9 @@ class ShadedTriangle {
     /// For SeenSamples; only of use where the rate asks for cells.
     const CellTriangle& cells() const { return cells_; }
 
+    /// Neither motion nor lens blurs any of it: what a pixel's samples see is all there is to a cell.
+    bool is_sharp() const;
+
     /// Barycentrics of the place (of the triangle's plane, moved into the triangle) that is seen at these pixels from
     /// the middle of the picture at mid-shutter.
     glm::vec3 barycentrics_at(const glm::dvec2& place) const;

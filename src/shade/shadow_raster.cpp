@@ -35,7 +35,7 @@ HWY_INLINE Vec product_difference(Vec a, Vec b, Vec c, Vec d) {
 struct Sheared {
     float x[3], y[3], w[3], z[3];
     float dx[3], dy[3], dw[3], dz[3];
-    float segments, segment;
+    float segments, segment, nearest;
     std::uint32_t triangle;
     bool moves, mixed;  // mixed: its opacity is to be asked
 };
@@ -52,7 +52,8 @@ Sheared shear(const ShadowCellWork& work, const Casters::Box& box) {
     T.moves = part.moves;
     T.segments = static_cast<float>(part.segments);
     T.segment = static_cast<float>(box.segment);
-    T.mixed = opacity_class(frame, box.triangle) == OpacityClass::kMixed;
+    T.mixed = box.mixed;
+    T.nearest = box.nearest;
     for (int k = 0; k < 3; ++k) {
         const std::size_t at =
             frame.corners[3 * std::size_t{box.triangle} + k] + std::size_t{box.segment} * part.vertex_count;
@@ -93,6 +94,8 @@ Mask ask_opacity(const ShadowCellWork& work, const Sheared& T, int first, const 
 template <bool kMoves, bool kPerspective>
 HWY_INLINE void test(const ShadowCellWork& work, const Sheared& T, int first, float* depths) {
     const F f;
+    const Vec stored = hn::Load(f, depths + first);
+    if (hn::AllTrue(f, hn::Le(stored, hn::Set(f, T.nearest)))) return;
     const Vec hx = hn::Load(f, work.samples.x + first), hy = hn::Load(f, work.samples.y + first);
     Vec s = hn::Zero(f);
     if constexpr (kMoves)
@@ -118,7 +121,7 @@ HWY_INLINE void test(const ShadowCellWork& work, const Sheared& T, int first, fl
     if (hn::AllFalse(f, hit)) return;
     const Vec sum = hn::Add(hn::Add(e[0], e[1]), e[2]);
     const Vec weighted = hn::Add(hn::Add(hn::Mul(e[0], z[0]), hn::Mul(e[1], z[1])), hn::Mul(e[2], z[2]));
-    const Vec depth = hn::Div(weighted, sum), stored = hn::Load(f, depths + first);
+    const Vec depth = hn::Div(weighted, sum);
     hit = hn::And(hit, hn::Lt(depth, stored));  // not for a depth that is no number: seen edge-on
     if constexpr (kPerspective)
         hit = hn::And(hit, hn::Ge(depth, hn::Set(f, static_cast<float>(work.casters.frame.view.w_near()))));

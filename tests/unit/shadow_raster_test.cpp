@@ -1,0 +1,103 @@
+#include "shade/shadow_raster.h"
+
+#include <cmath>
+#include <cstring>
+#include <gtest/gtest.h>
+
+#include "base/aligned.h"
+#include "small_scene.h"
+#include "support/isa.h"
+#include "support/random.h"
+
+namespace pentaprism {
+namespace {
+
+constexpr int kWidth = 64;       // texels of the level: four cells
+constexpr float kScale = 32.0f;  // texels a unit
+
+// Triangles of all sizes before a light at the origin that looks along z; half of them move, in one or three pieces.
+WorldMotion random_world(support::Random& random) {
+    WorldMotion world;
+    const auto part_of = [&](int segments, bool moves) {
+        Part part;
+        part.first_triangle = static_cast<std::uint32_t>(world.part_of.size());
+        part.triangle_count = 60;
+        part.first_point = static_cast<std::uint32_t>(world.points.size());
+        part.vertex_count = 3 * part.triangle_count;
+        part.segments = segments;
+        part.moves = moves;
+        std::vector<glm::vec3> points;
+        for (std::uint32_t t = 0; t < part.triangle_count; ++t) {
+            const double size = std::exp2(random.range(-6.0, 0.5));
+            const glm::dvec3 middle(random.range(-1.1, 1.1), random.range(-1.1, 1.1), random.range(0.8, 5.0));
+            for (int k = 0; k < 3; ++k) {
+                const glm::dvec3 p(middle.x + size * random.range(-1.0, 1.0), middle.y + size * random.range(-1.0, 1.0),
+                                   1.0 + 0.2 * random.range(-1.0, 1.0));
+                points.emplace_back(p.x * middle.z, p.y * middle.z, p.z * middle.z);
+            }
+            world.part_of.push_back(static_cast<std::uint32_t>(world.parts.size()));
+        }
+        for (std::uint32_t i = 0; i < part.vertex_count; ++i) world.corners.push_back(part.first_point + i);
+        for (int knot = 0; knot < (moves ? segments + 1 : 1); ++knot)
+            for (glm::vec3& p : points) {
+                world.points.push_back(p);
+                p += 0.1f * glm::vec3(random.range(-1.0, 1.0), random.range(-1.0, 1.0), random.range(-1.0, 1.0));
+            }
+        world.parts.push_back(part);
+        world.bounds.push_back({glm::vec3(-100.0f), glm::vec3(100.0f)});
+    };
+    part_of(1, false);
+    part_of(1, true);
+    part_of(3, true);
+    return world;
+}
+
+// In pixels, as the exact test takes it.
+Frame in_texels(Frame frame) {
+    for (glm::vec4& p : frame.points) p.x *= kScale, p.y *= kScale;
+    return frame;
+}
+
+TEST(ShadowRaster, ACellHoldsWhatTheExactTestSeesOnEveryCpuTarget) {
+    support::Random random(7);
+    const ShadowSamples samples(3);
+    const SampleTable table(ShadowSamples::kSamples, 3, Lens{}, Grouping::kMotion);
+    std::size_t hits_seen = 0, differ = 0;
+    for (int round = 0; round < 10; ++round)
+        for (const bool perspective : {true, false}) {
+            const WorldMotion world = random_world(random);
+            LightView view;
+            view.perspective = perspective;
+            const Casters casters = make_casters(world, Frame{}, view, kWidth, false);
+            const Frame exact = in_texels(casters.frame);
+            std::vector<std::uint32_t> list(casters.boxes.size());
+            for (std::uint32_t i = 0; i < list.size(); ++i) list[i] = i;
+            for (int cell = 0; cell < 4; ++cell) {
+                const int cx = cell % 2, cy = cell / 2;
+                const ShadowCellWork work{casters, list, samples.cell(cx, cy), cx, cy, kWidth, kScale};
+                AlignedVector<float> depths(ShadowSamples::kPerCell), others(ShadowSamples::kPerCell);
+                draw_shadow_cell()(work, depths.data());
+                for (const char* isa : {"scalar", "avx2", "avx512"}) {
+                    if (!support::has_isa(isa)) continue;
+                    const support::UseIsa use(isa);
+                    draw_shadow_cell()(work, others.data());
+                    EXPECT_EQ(std::memcmp(depths.data(), others.data(), sizeof(float) * depths.size()), 0) << isa;
+                }
+                Hits hits;
+                const Tile tile{cx * kCellSize, cy * kCellSize, (cx + 1) * kCellSize, (cy + 1) * kCellSize};
+                small_scene::find_hits(exact, table, tile, hits);
+                for (int i = 0; i < ShadowSamples::kPerCell; ++i) {
+                    const int texel = i / ShadowSamples::kSamples;
+                    const float expected = hits.depth[small_scene::hit_index(
+                        texel % kCellSize, texel / kCellSize, i % ShadowSamples::kSamples, ShadowSamples::kSamples)];
+                    hits_seen += std::isfinite(expected);
+                    differ += !(depths[i] == expected || std::abs(depths[i] - expected) < 1e-4f * expected);
+                }
+            }
+        }
+    EXPECT_GT(hits_seen, 100000u);
+    EXPECT_LT(differ, hits_seen / 10000);  // rounding at an edge decides
+}
+
+}  // namespace
+}  // namespace pentaprism
