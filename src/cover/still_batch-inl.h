@@ -84,10 +84,10 @@ HWY_INLINE void make_edges(F f, StillBatch& batch, int lane, const Vec x[3], con
     const Vec slack_x = hn::Mul(rounding, scale_x), slack_y = hn::Mul(rounding, scale_y);
     const Vec area = hn::Sub(hn::Mul(hn::Sub(sx[1], sx[0]), hn::Sub(sy[2], sy[0])),
                              hn::Mul(hn::Sub(sx[2], sx[0]), hn::Sub(sy[1], sy[0])));
+    const Vec outward = hn::CopySign(hn::Set(f, 1.0f), area);
     for (int k = 0; k < 3; ++k) {
         const int i = (k + 1) % 3, j = (k + 2) % 3;
-        const Vec nx = hn::CopySign(hn::Set(f, 1.0f), area), away_x = hn::Mul(nx, hn::Sub(sy[j], sy[i])),
-                  away_y = hn::Mul(nx, hn::Sub(sx[i], sx[j]));
+        const Vec away_x = hn::Mul(outward, hn::Sub(sy[j], sy[i])), away_y = hn::Mul(outward, hn::Sub(sx[i], sx[j]));
         const Vec ax = hn::Abs(away_x), ay = hn::Abs(away_y);
         Vec support = hn::Set(f, -INFINITY);
         for (int corner = 0; corner < 3; ++corner)
