@@ -10,7 +10,9 @@ std::vector<Case> cases() {
                              {"car/motion", "builtin:car", Effect::kMotion, 24},
                              {"fairy-forest/both", "builtin:fairy-forest", Effect::kBoth, 24},
                              {"fairy-forest/both-x2", "builtin:fairy-forest", Effect::kBothTwice, 24},
-                             {"fairy-forest/still", "builtin:fairy-forest", Effect::kStill, 24}};
+                             {"fairy-forest/still", "builtin:fairy-forest", Effect::kStill, 24},
+                             {"bridge/motion", "builtin:bridge", Effect::kMotion, 24},
+                             {"bridge/both", "builtin:bridge", Effect::kBoth, 24}};
     if (const char* folder = std::getenv("PENTAPRISM_SCENES")) {
         const std::string root = std::string(folder) + "/";
         for (const Case& real :

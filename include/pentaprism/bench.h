@@ -35,7 +35,7 @@ struct BenchPlan {
     std::vector<std::string> effects;  ///< names of bench_effects(), or other factors; empty: all seven
     std::vector<std::string>
         methods;              ///< of bench_methods(), and combinations of culling tests; empty: the default ones
-    RenderSettings settings;  ///< image, method.seed, method.threads, animation; lens and shutter: see effects
+    RenderSettings settings;  ///< image, method.seed, .threads, .backend, animation; lens and shutter: see effects
     double frame = -1.0;      ///< below 0: 24 of a built-in scene, 0 of a file
     int runs = 5;             ///< timed runs of each method, methods in turn; the median counts
     double seconds = 4.0;     ///< a slower method gets fewer runs: as many as fit in these seconds, at least one

@@ -32,10 +32,12 @@ struct FrameInfo {
     double fx = 0.0, fy = 0.0;                 ///< pixels: focal length (perspective) or pixels a metre (orthographic)
     std::string camera;
     int max_motion_segments = 1;
-    /// The camera at the shutter knots k / max_motion_segments: seconds, and world to camera as world_to_camera.
+    /// The camera at the shutter knots k / max_motion_segments: seconds, and the rest as above. Zoom and focus pulls
+    /// are in it.
     struct Knot {
         double time = 0.0;
         std::array<double, 16> world_to_camera{};
+        double fx = 0.0, fy = 0.0, lens_radius = 0.0, focus_distance = 0.0;
     };
     std::vector<Knot> knots;
     std::vector<Aov> aovs;                                        ///< what PixelRows::aovs holds, in this order
@@ -87,6 +89,10 @@ class Renderer {
     /// file that the picture will be written to. The statistics are those of the part.
     void render_shard(const RenderSettings& settings, double frame, const Shard& shard, const FileMetadata& metadata,
                       ByteSink& out, RenderStats& stats, const Progress& progress = {});
+
+    /// A frame's samples, as bytes that StoredSamples (pentaprism/stored_samples.h) makes pictures of: 32 for each.
+    void render_samples(const RenderSettings& settings, double frame, const FileMetadata& metadata, ByteSink& out,
+                        RenderStats& stats, const Progress& progress = {});
 
   private:
     void run(const RenderSettings& settings, double frame, RenderStats& stats,

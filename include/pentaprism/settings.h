@@ -89,8 +89,8 @@ struct CameraSettings {
     std::optional<double> tilt_deg, swing_deg;
     std::string aperture_image;      ///< .png or .exr file whose luminance is the lens, instead of blades
     std::optional<double> cats_eye;  ///< how far a corner's lens is cut by the barrel, in lens radii; 0 to 1.5, 0
-    CameraOffset offset;                               ///< the same for the whole frame
-    CameraOffset offset_before, offset_after;          ///< of the neighbouring frames: what flow leads to
+    CameraOffset offset;             ///< the same for the whole frame
+    CameraOffset offset_before, offset_after;  ///< of the neighbouring frames: what flow leads to
 };
 
 struct ShutterSettings {

@@ -77,3 +77,17 @@ ivec4 covered_pixels(ScreenBox box, ivec4 limits) {
     return ivec4(max(x0, double(limits.x)), min(x1, double(limits.y)), max(y0, double(limits.z)),
                  min(y1, double(limits.w)));
 }
+
+// Some vertex may be behind the camera plane; the end of the path as the exact test computes it counts, too.
+bool reaches_camera(MovingTriangle m) {
+    for (int i = 0; i < 3; ++i) {
+        precise float step = float(double(m.r[i].z) - double(m.q[i].z)), end = m.q[i].z + step;
+        if (min(min(m.q[i].z, m.r[i].z), end) < w_near) return true;
+    }
+    return false;
+}
+
+// LocalTriangle's box: the exact test asks only triangles that reach the camera plane.
+vec4 exact_box(MovingTriangle m, ScreenBox bounds) {
+    return reaches_camera(m) ? vec4(bounds.x0, bounds.x1, bounds.y0, bounds.y1) : vec4(-1e30, 1e30, -1e30, 1e30);
+}

@@ -29,6 +29,7 @@ struct BenchCommand {
     std::optional<std::pair<int, int>> resolution;
     std::optional<std::int64_t> spp, frame, seed, threads, runs, tests;
     std::optional<double> seconds, fps;
+    Backend backend = Backend::kCpu;
     fs::path folder;
     Verbosity verbosity;
 };
@@ -70,6 +71,7 @@ BenchPlan plan_of(const BenchCommand& command) {
     if (command.fps) settings.animation.fps = *command.fps;
     if (command.seed) settings.method.seed = static_cast<std::uint32_t>(*command.seed);
     if (command.threads) settings.method.threads = static_cast<int>(*command.threads);
+    settings.method.backend = command.backend;
     if (command.runs) plan.runs = static_cast<int>(*command.runs);
     if (command.tests) plan.most_tests = *command.tests;
     if (command.seconds) plan.seconds = *command.seconds;
@@ -131,6 +133,9 @@ void add_what(CLI::App& command, BenchCommand& bench) {
         "Values of render --culling or --visibility, and combinations, with commas (default all but micropolygon): " +
             methods,
         [&](const std::string& text) { bench.methods = split("--methods", text); });
+    add_value(command, group, "--backend", "cpu|gl",
+              "What is measured: the processor, or OpenGL, compared with the processor's hits (default cpu)",
+              [&](const std::string& text) { bench.backend = parse_backend(text); });
     add_value(command, group, "--peer", "embree", "Time visibility against this ray tracer, too",
               [&](const std::string& text) {
                   bench.embree = parse_choice<bool>("--peer", text, {{"embree", true}});

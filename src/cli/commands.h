@@ -17,6 +17,8 @@ void add_bench(CLI::App& program, Run& run);
 void add_experiment(CLI::App& program, Run& run);
 void add_compare(CLI::App& program, Run& run);
 void add_merge(CLI::App& program, Run& run);
+void add_refocus(CLI::App& program, Run& run);
+void add_retime(CLI::App& program, Run& run);
 
 /// Commands of the contract that are refused by name: view.
 void add_planned_commands(CLI::App& program, Run& run);

@@ -92,7 +92,12 @@ Json camera_json(const FrameInfo& info) {
     json["readout_s"] = info.readout;
     Json knots = Json::array();
     for (const FrameInfo::Knot& knot : info.knots)
-        knots.push_back({{"time_s", knot.time}, {"world_to_camera_column_major", knot.world_to_camera}});
+        knots.push_back({{"time_s", knot.time},
+                         {"world_to_camera_column_major", knot.world_to_camera},
+                         {"fx", knot.fx},
+                         {"fy", knot.fy},
+                         {"lens_radius_m", knot.lens_radius},
+                         {"focus_distance_m", knot.focus_distance}});
     json["knots"] = knots;
     return json;
 }

@@ -52,6 +52,9 @@ std::unique_ptr<FrameOutput> make_dataset_output(const FrameSource& source, cons
 std::unique_ptr<FrameOutput> make_shard_output(const FrameSource& source, const std::filesystem::path& out,
                                                const Shard& shard);
 
+/// All samples of each frame, for `refocus` and `retime`.
+std::unique_ptr<FrameOutput> make_samples_output(const FrameSource& source, const std::filesystem::path& out);
+
 /// The whole frame `out` by MPI processes together; the first one writes it.
 struct Ranks;
 std::unique_ptr<FrameOutput> make_ranks_output(const FrameSource& source, const std::filesystem::path& out,

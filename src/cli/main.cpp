@@ -64,6 +64,8 @@ int run_program(int argc, char** argv) {
     add_experiment(program, run);
     add_compare(program, run);
     add_merge(program, run);
+    add_refocus(program, run);
+    add_retime(program, run);
     add_planned_commands(program, run);
     try {
         program.parse(argc, argv);

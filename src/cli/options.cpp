@@ -134,14 +134,6 @@ void add_lens_options(CLI::App& command, CameraSettings& camera) {
         ->group(group);
 }
 
-std::vector<ShutterPoint> parse_shutter_curve(const std::string& text) {
-    if (text == "box") return {};
-    const std::string trapezoid = "trapezoid:";
-    if (text.substr(0, trapezoid.size()) != trapezoid) return read_shutter_curve(text);
-    const auto times = parse_numbers("--shutter-curve", text.substr(trapezoid.size()), 2, "trapezoid:OPEN,CLOSE");
-    return trapezoid_shutter(times[0], times[1]);
-}
-
 void add_shutter_options(CLI::App& command, ShutterSettings& shutter) {
     const std::string group = "Shutter";
     add_number(command, group, "--shutter", "F", "Open time in frames (default: the camera's, else 0.5)",
@@ -159,14 +151,7 @@ void add_shutter_options(CLI::App& command, ShutterSettings& shutter) {
               [&](const std::string& text) { shutter.curve = parse_shutter_curve(text); });
     add_value(command, group, "--rolling-shutter", "none|top|bottom|left|right",
               "The edge of the picture that is exposed first (default none: all at once)",
-              [&](const std::string& text) {
-                  shutter.rolling = parse_choice<RollingShutter>("--rolling-shutter", text,
-                                                                 {{"none", RollingShutter::kNone},
-                                                                  {"top", RollingShutter::kTop},
-                                                                  {"bottom", RollingShutter::kBottom},
-                                                                  {"left", RollingShutter::kLeft},
-                                                                  {"right", RollingShutter::kRight}});
-              });
+              [&](const std::string& text) { shutter.rolling = parse_rolling_shutter(text); });
     add_number(command, group, "--rolling-shutter-duration", "F",
                "Frames from the first row's opening to the last's (default 0.5)", shutter.rolling_duration);
     add_value(command, group, "--motion-segments", "auto|N",
@@ -210,11 +195,9 @@ void add_method_options(CLI::App& command, MethodSettings& method) {
                                                       {"raytrace", VisibilityMethod::kRaytrace},
                                                       {"micropolygon", VisibilityMethod::kMicropolygon}});
               });
-    add_value(
-        command, group, "--backend", "cpu|gl",
-        "What finds visible surfaces: the processor, or OpenGL 4.5 (default cpu)", [&](const std::string& text) {
-            method.backend = parse_choice<Backend>("--backend", text, {{"cpu", Backend::kCpu}, {"gl", Backend::kGl}});
-        });
+    add_value(command, group, "--backend", "cpu|gl",
+              "What finds visible surfaces: the processor, or OpenGL 4.5 (default cpu)",
+              [&](const std::string& text) { method.backend = parse_backend(text); });
     add_value(command, group, "--shading", "pixel|sample|decoupled",
               "How often visible surfaces are shaded (default decoupled)", [&](const std::string& text) {
                   method.shading = parse_choice<std::string>(
@@ -263,14 +246,29 @@ CLI::Option* add_value(CLI::App& command, const std::string& group, const std::s
     return command.add_option_function<std::string>(names, std::move(take), description)->type_name(form)->group(group);
 }
 
-void refuse_as_planned(const std::string& what) {
-    throw Error(ErrorKind::kUsage, what + " is not built yet (planned: see CHANGELOG)");
+std::vector<ShutterPoint> parse_shutter_curve(const std::string& text) {
+    if (text == "box") return {};
+    const std::string trapezoid = "trapezoid:";
+    if (text.substr(0, trapezoid.size()) != trapezoid) return read_shutter_curve(text);
+    const auto times = parse_numbers("--shutter-curve", text.substr(trapezoid.size()), 2, "trapezoid:OPEN,CLOSE");
+    return trapezoid_shutter(times[0], times[1]);
 }
 
-void add_planned_value(CLI::App& command, const std::string& group, const std::string& name, const std::string& form,
-                       const std::string& description) {
-    add_value(command, group, name, form, description + " (not built yet)",
-              [name](const std::string&) { refuse_as_planned(name); });
+RollingShutter parse_rolling_shutter(const std::string& text) {
+    return parse_choice<RollingShutter>("--rolling-shutter", text,
+                                        {{"none", RollingShutter::kNone},
+                                         {"top", RollingShutter::kTop},
+                                         {"bottom", RollingShutter::kBottom},
+                                         {"left", RollingShutter::kLeft},
+                                         {"right", RollingShutter::kRight}});
+}
+
+Backend parse_backend(const std::string& text) {
+    return parse_choice<Backend>("--backend", text, {{"cpu", Backend::kCpu}, {"gl", Backend::kGl}});
+}
+
+void refuse_as_planned(const std::string& what) {
+    throw Error(ErrorKind::kUsage, what + " is not built yet (planned: see CHANGELOG)");
 }
 
 void add_scene_argument(CLI::App& command, std::string& scene) {

@@ -13,10 +13,13 @@ namespace pentaprism::cli {
 CLI::Option* add_value(CLI::App& command, const std::string& group, const std::string& names, const std::string& form,
                        const std::string& description, std::function<void(const std::string&)> take);
 
-/// An option or value of the contract that is refused by name until its feature is built.
-void add_planned_value(CLI::App& command, const std::string& group, const std::string& names, const std::string& form,
-                       const std::string& description);
+/// For what the contract names and is not built yet.
 [[noreturn]] void refuse_as_planned(const std::string& what);
+
+/// Values of --shutter-curve and --rolling-shutter.
+std::vector<ShutterPoint> parse_shutter_curve(const std::string& text);
+RollingShutter parse_rolling_shutter(const std::string& text);
+Backend parse_backend(const std::string& text);
 
 void add_scene_argument(CLI::App& command, std::string& scene);
 

@@ -39,7 +39,7 @@ double milliseconds_since(Clock::time_point start) {
 struct RenderCommand {
     std::string scene;
     RenderSettings settings;
-    fs::path out, stats, dataset;
+    fs::path out, stats, dataset, samples;
     bool sharp = false;
     std::vector<std::int64_t> frames{0};
     bool overwrite = false, skip_existing = false, resume = false;
@@ -55,40 +55,58 @@ struct RenderCommand {
     bool leaves_existing() const { return skip_existing || resume; }
 };
 
-void check_names(const RenderCommand& command) {
-    if (command.out.empty() && command.dataset.empty())
-        throw Error(ErrorKind::kUsage, "--output is required, and must end in .exr or .png (or give --dataset DIR)");
+[[noreturn]] void refuse(const std::string& why) {
+    throw Error(ErrorKind::kUsage, why);
+}
+
+// What goes with what.
+void check_kind(const RenderCommand& command) {
+    const bool has_aovs = !command.settings.image.aovs.empty();
+    if (command.out.empty() && command.dataset.empty() && command.samples.empty())
+        refuse("--output is required, and must end in .exr or .png (or give --dataset DIR or --samples FILE)");
     if (!command.out.empty() && !command.dataset.empty())
-        throw Error(ErrorKind::kUsage, "--output and --dataset exclude each other: a data set has names of its own");
+        refuse("--output and --dataset exclude each other: a data set has names of its own");
+    if (!command.samples.empty()) {
+        if (!command.out.empty() || !command.dataset.empty())
+            refuse("--samples: instead of --output and --dataset; `pentaprism refocus` makes pictures of them");
+        if (has_aovs || command.sharp || command.shards_a_frame())
+            refuse("--samples: samples have neither --aov nor --sharp, and no parts of a frame; leave them out");
+        if (command.samples.extension() != ".5ds")
+            refuse(fmt::format("--samples {}: the name must end in .5ds", command.samples.string()));
+    } else if (!command.dataset.empty()) {
+        if (has_aovs || command.sharp) refuse("--dataset holds its own --aov and --sharp; leave them out");
+        if (command.shards_a_frame()) refuse("--shard: a --dataset is shared out by its frames; give several");
+    } else {
+        check_picture_name(command.out, has_aovs);
+        if (command.shards_a_frame() && command.sharp)
+            refuse("--sharp: a part of a frame has no twin; shard several frames, or leave it out");
+    }
+}
+
+// A file for each frame, in a folder that can be written to.
+void check_names(const RenderCommand& command) {
+    const auto check_numbered = [&](const fs::path& file, const char* option) {
+        if (file.empty()) return;
+        if (command.frames.size() > 1 && !has_frame_number(file))
+            refuse(fmt::format("{} {}: {} frames need a place for their number, such as a.####{}", option,
+                               file.string(), command.frames.size(), file.extension().string()));
+        check_output_name(frame_file(file, command.frames.front()), option);
+    };
     if (!command.stats.empty()) {
         check_output_name(frame_file(command.stats, command.frames.front()), "--stats");
         if (command.shard && command.frames.size() > 1 && !has_frame_number(command.stats))
-            throw Error(ErrorKind::kUsage,
-                        "--stats: a part of a sequence needs a place for the frame's number, such as s.####.json");
+            refuse("--stats: a part of a sequence needs a place for the frame's number, such as s.####.json");
     }
-    if (!command.dataset.empty()) {
-        if (!command.settings.image.aovs.empty() || command.sharp)
-            throw Error(ErrorKind::kUsage, "--dataset holds its own --aov and --sharp; leave them out");
-        if (command.shards_a_frame())
-            throw Error(ErrorKind::kUsage, "--shard: a --dataset is shared out by its frames; give several");
-        return;
-    }
-    check_picture_name(command.out, !command.settings.image.aovs.empty());
-    if (command.shards_a_frame() && command.sharp)
-        throw Error(ErrorKind::kUsage, "--sharp: a part of a frame has no twin; shard several frames, or leave it out");
-    if (command.frames.size() > 1 && !has_frame_number(command.out)) {
-        throw Error(ErrorKind::kUsage,
-                    fmt::format("--output {}: {} frames need a place for their number, such as a.####{}",
-                                command.out.string(), command.frames.size(), command.out.extension().string()));
-    }
-    check_output_name(frame_file(command.out, command.frames.front()), "--output");
+    check_numbered(command.out, "--output");
+    check_numbered(command.samples, "--samples");
 }
 
 Json to_json(const RenderStats& stats, const RenderCommand& command, std::int64_t frame, const std::string& scene) {
     Json json;
     json["scene"] = scene;
     json["frame"] = frame;
-    if (!command.out.empty()) json["file"] = frame_file(command.out, frame).filename().string();
+    const fs::path& file = command.samples.empty() ? command.out : command.samples;
+    if (!file.empty()) json["file"] = frame_file(file, frame).filename().string();
     json["width"] = command.settings.image.width;
     json["height"] = command.settings.image.height;
     json["spp"] = command.settings.image.spp;
@@ -103,6 +121,7 @@ Json to_json(const RenderStats& stats, const RenderCommand& command, std::int64_
     json["peak_mb"] = stats.peak_mb;
     json["threads"] = stats.threads;
     json["isa"] = stats.isa;
+    if (!stats.device.empty()) json["device"] = stats.device;
     return json;
 }
 
@@ -127,18 +146,24 @@ std::vector<std::int64_t> frames_to_do(const RenderCommand& command, const Frame
     return frames;
 }
 
+// A colour that samples share holds the blur that was rendered: what is developed later wants each its own.
+void keep_samples_apart(MethodSettings& method) {
+    method.shading = "sample";
+    if (method.texture_filter == TextureFilter::kFull) method.texture_filter = TextureFilter::kPixel;
+}
+
 // MPI processes share out the work as shards do.
 void share_with_ranks(RenderCommand& command) {
     command.ranks = join_ranks();
     if (command.ranks.alone()) return;
-    if (command.shard)
-        throw Error(ErrorKind::kUsage, "--shard: mpirun shares out the work already; leave one of them out");
+    if (command.shard) refuse("--shard: mpirun shares out the work already; leave one of them out");
     command.shard = Shard{command.ranks.rank, command.ranks.size};
     if (!command.ranks.first()) command.verbosity.progress = ProgressStyle::kNone;
 }
 
 std::unique_ptr<FrameOutput> make_output(const RenderCommand& command, const FrameSource& source) {
     if (!command.dataset.empty()) return make_dataset_output(source, command.dataset, command.shard);
+    if (!command.samples.empty()) return make_samples_output(source, command.samples);
     if (command.shards_a_frame())
         return command.ranks.alone() ? make_shard_output(source, command.out, *command.shard)
                                      : make_ranks_output(source, command.out, command.ranks);
@@ -147,8 +172,10 @@ std::unique_ptr<FrameOutput> make_output(const RenderCommand& command, const Fra
 
 int render(RenderCommand& command) {
     complete_settings(command.settings);
+    if (!command.samples.empty()) keep_samples_apart(command.settings.method);
     share_with_ranks(command);
     if (command.randomization) check_randomization(command.settings, *command.randomization);
+    check_kind(command);
     check_names(command);
     const Clock::time_point load_start = Clock::now();
     const Scene scene = load_scene(command.scene);
@@ -179,6 +206,7 @@ int render(RenderCommand& command) {
             if (stats_for_each_frame) write_text_file(frame_file(command.stats, frame), to_text(json));
             all_stats.push_back(std::move(json));
         }
+        if (!stats.device.empty()) print_debug("device: " + stats.device);
         for (const auto& [stage, ms] : stats.times_ms)
             print_debug(fmt::format("frame {}: {} {:.1f} ms", frame, stage, ms));
         progress.end_frame(output->name(frame));
@@ -214,7 +242,9 @@ void add_output_options(CLI::App& command, RenderCommand& render) {
     add_value(command, group, "--stats", "FILE.json",
               "What a frame cost; #### as in OUT, else an array for several frames",
               [&](const std::string& text) { render.stats = text; });
-    add_planned_value(command, group, "--samples", "FILE", "Dump of every sample");
+    add_value(command, group, "--samples", "FILE.5ds",
+              "Instead of OUT: every sample with its ray, for `refocus` and `retime`; 32 bytes each",
+              [&](const std::string& text) { render.samples = text; });
 }
 
 void add_frame_options(CLI::App& command, RenderCommand& render) {

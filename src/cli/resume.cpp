@@ -4,7 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <pentaprism/error.h>
-#include <pentaprism/shard.h>
+#include <pentaprism/stored_samples.h>
 
 namespace pentaprism::cli {
 namespace {
@@ -18,6 +18,7 @@ std::string dump(const Json& json) {
 // Of a picture, a shard, or a data set's frames/NNNN.json. Throws Error(kScene).
 FileMetadata metadata_of(const std::filesystem::path& file) {
     if (file.extension() == ".shard") return read_shard_metadata(file);
+    if (file.extension() == ".5ds") return read_samples_metadata(file);
     if (file.extension() != ".json") return read_metadata(file);
     std::ifstream stream(file);
     const Json json = Json::parse(stream, nullptr, false);

@@ -1,4 +1,5 @@
-// `--shard I/N` of a single frame: its part of the tiles, for `pentaprism merge`.
+// What is no picture yet: `--shard I/N` of a single frame, its part of the tiles for `pentaprism merge`; and
+// `--samples`.
 
 #include <fmt/format.h>
 #include <pentaprism/error.h>
@@ -14,9 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class ShardOutput : public FrameOutput {
+class StreamOutput : public FrameOutput {
   public:
-    ShardOutput(const FrameSource& source, const fs::path& out, const Shard& shard)
+    /// Without a shard: samples.
+    StreamOutput(const FrameSource& source, const fs::path& out, const std::optional<Shard>& shard)
         : source_(source), out_(out), shard_(shard) {}
 
     std::string name(std::int64_t frame) const override { return file(frame).string(); }
@@ -25,22 +27,28 @@ class ShardOutput : public FrameOutput {
         for (const std::int64_t frame : frames) check_made_with(file(frame), source_.metadata(source_.at(frame)));
     }
     RenderStats render(Renderer& renderer, std::int64_t frame, const Progress& progress) override {
-        const auto shard_file = make_shard_file(file(frame));
+        const auto stream = make_shard_file(file(frame));
         RenderStats stats;
+        const double number = static_cast<double>(frame);
         const RenderSettings settings = source_.at(frame);
-        renderer.render_shard(settings, static_cast<double>(frame), shard_, source_.metadata(settings), *shard_file,
-                              stats, progress);
+        if (shard_)
+            renderer.render_shard(settings, number, *shard_, source_.metadata(settings), *stream, stats, progress);
+        else
+            renderer.render_samples(settings, number, source_.metadata(settings), *stream, stats, progress);
         throw_if_interrupted();
-        shard_file->finish();
+        stream->finish();
         return stats;
     }
 
   private:
-    fs::path file(std::int64_t frame) const { return shard_name(frame_file(out_, frame), shard_); }
+    fs::path file(std::int64_t frame) const {
+        const fs::path name = frame_file(out_, frame);
+        return shard_ ? shard_name(name, *shard_) : name;
+    }
 
     FrameSource source_;
     fs::path out_;
-    Shard shard_;
+    std::optional<Shard> shard_;
 };
 
 }  // namespace
@@ -66,7 +74,11 @@ std::vector<std::int64_t> frames_of(const std::vector<std::int64_t>& frames, con
 }
 
 std::unique_ptr<FrameOutput> make_shard_output(const FrameSource& source, const fs::path& out, const Shard& shard) {
-    return std::make_unique<ShardOutput>(source, out, shard);
+    return std::make_unique<StreamOutput>(source, out, shard);
+}
+
+std::unique_ptr<FrameOutput> make_samples_output(const FrameSource& source, const fs::path& out) {
+    return std::make_unique<StreamOutput>(source, out, std::nullopt);
 }
 
 }  // namespace pentaprism::cli

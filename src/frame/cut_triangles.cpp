@@ -1,176 +1,216 @@
 #include "frame/cut_triangles.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <unordered_map>
+#include <map>
+#include <tuple>
 
 namespace pentaprism {
 namespace {
 
-constexpr double kMaxError = 0.5;  // pixels of radius
-constexpr std::uint32_t kWhole = 0xffffffffu;
+constexpr double kMaxError = 0.4;  // pixels of radius
 
-float depth_of(const KnotPoints& knot, std::uint32_t point) {
-    return knot.depths.empty() ? knot.points[point].z : knot.depths[point];
-}
-
-// Depths at which Lens::coc() bends.
-std::vector<double> bends(const Lens& lens) {
-    std::vector<double> depths{lens.focus_distance};
+// Where c of this view is not straight: from the first to the last of these.
+std::vector<double> bends(const View& view) {
+    const Lens& lens = view.lens;
+    std::vector<double> depths;
     if (lens.sharp_range) {
         const auto [from, to] = *lens.sharp_range;
         const double width = 0.25 * (to - from);
-        depths.insert(depths.end(), {from - width, from - 0.5 * width, from, to, to + 0.5 * width, to + width});
+        depths = {from - width, from, lens.focus_distance, to, to + width};
     }
-    if (std::isfinite(lens.max_foreground_px)) depths.push_back(-lens.a / (lens.b + lens.max_foreground_px));
+    if (std::isfinite(lens.max_foreground_px) && lens.b > 0.0) {
+        // -M = a / z + b (perspective) or a + b * z: where the limit takes over.
+        const double limit = lens.max_foreground_px;
+        depths.push_back(view.perspective ? -lens.a / (lens.b + limit) : (-limit - lens.a) / lens.b);
+    }
+    std::erase_if(depths, [&](double z) { return !(z > view.depth_near); });
+    std::sort(depths.begin(), depths.end());
     return depths;
+}
+
+// Of a radius that is drawn straight in c from depth p to depth q, in pixels.
+double error(const View& view, double p, double q) {
+    const double c0 = view.coc(0, 0, p), c1 = view.coc(0, 0, q);
+    double worst = 0.0;
+    constexpr int kSteps = 16;
+    for (int i = 1; i < kSteps; ++i) {
+        const double s = static_cast<double>(i) / kSteps, z = p + s * (q - p);
+        worst = std::max(worst, std::abs(c0 + s * (c1 - c0) - view.coc(0, 0, z)) / (view.perspective ? z : 1.0));
+    }
+    return worst;
+}
+
+// How far from depth z, up to `most`, c may be drawn straight.
+double straight_from(std::span<const View> views, double z, double most) {
+    const auto fits = [&](double step) {
+        return std::all_of(views.begin(), views.end(),
+                           [&](const View& view) { return error(view, z, z + step) <= kMaxError; });
+    };
+    if (fits(most)) return most;
+    double low = 0.0, high = most;
+    for (int i = 0; i < 20; ++i) {
+        const double middle = 0.5 * (low + high);
+        (fits(middle) ? low : high) = middle;
+    }
+    return low;
 }
 
 class Cutter {
   public:
     Cutter(std::span<const std::uint32_t> indices, std::vector<KnotPoints>& knots) : indices_(indices), knots_(knots) {
-        for (const KnotPoints& knot : knots_) bends_.push_back(bends(knot.view.lens));
+        depth_.assign(knots[0].points.size(), 0.0);
+        double motion = 0.0;
+        for (std::size_t i = 0; i < depth_.size(); ++i) {
+            double low = depth_of(knots[0], i), high = low;
+            for (const KnotPoints& knot : knots) {
+                const double z = depth_of(knot, i);
+                depth_[i] += z / static_cast<double>(knots.size());
+                low = std::min(low, z), high = std::max(high, z);
+            }
+            motion = std::max(motion, high - low);
+        }
+        std::vector<View> views;
+        for (const KnotPoints& knot : knots) views.push_back(knot.view);
+        levels_ = cut_depths(views, motion);
     }
 
     CutTriangles cut() {
-        for (std::uint32_t i = 0; i < indices_.size() / 3; ++i) {
-            const std::array corners = {indices_[3 * i], indices_[3 * i + 1], indices_[3 * i + 2]};
-            Piece piece;
-            piece.source = i;
-            open_.push_back({corners, piece});
-            const bool seen = may_be_seen(corners);
-            while (!open_.empty()) {
-                const Open next = open_.back();
-                open_.pop_back();
-                if (!seen || !split(next)) keep(next);
-            }
-        }
+        for (std::uint32_t i = 0; i < indices_.size() / 3; ++i) cut_triangle(i);
         return std::move(result_);
     }
 
   private:
-    struct Open {
-        std::array<std::uint32_t, 3> corners;
-        Piece piece;
+    // Of what is left of a triangle: one of its corners, or a cut of one of its edges (edge k begins at corner k).
+    struct Vertex {
+        std::uint32_t point;
+        glm::vec2 place;  // as Piece::corner
+        double z;
+        int corner, edge;  // one of them is -1
     };
+    using Polygon = std::vector<Vertex>;
 
-    void keep(const Open& triangle) {
-        result_.indices.insert(result_.indices.end(), triangle.corners.begin(), triangle.corners.end());
-        result_.pieces.push_back(triangle.piece);
+    static double depth_of(const KnotPoints& knot, std::size_t point) {
+        return knot.depths.empty() ? knot.points[point].z : knot.depths[point];
     }
 
-    // False: no edge needs a cut.
-    bool split(const Open& t) {
-        std::uint32_t middle[3];  // of the edge from corner k
-        for (int k = 0; k < 3; ++k) middle[k] = middle_of(t.corners[k], t.corners[(k + 1) % 3]);
-        const int cuts = static_cast<int>(3 - std::count(middle, middle + 3, kWhole));
-        if (cuts == 0) return false;
-        const auto corner = [&](int k) { return std::pair(t.corners[k % 3], t.piece.corner[k % 3]); };
-        const auto edge = [&](int k) {
-            return std::pair(middle[k % 3], 0.5f * (t.piece.corner[k % 3] + t.piece.corner[(k + 1) % 3]));
-        };
-        const auto add = [&](const auto& a, const auto& b, const auto& c) {
-            open_.push_back({{a.first, b.first, c.first}, {t.piece.source, {a.second, b.second, c.second}}});
-        };
-        if (cuts == 3) {
-            for (int k = 0; k < 3; ++k) add(corner(k), edge(k), edge(k + 2));
-            add(edge(0), edge(1), edge(2));
-            return true;
+    void cut_triangle(std::uint32_t number) {
+        const std::uint32_t* corners = &indices_[3 * std::size_t{number}];
+        const Piece whole;
+        Polygon rest;
+        for (int k = 0; k < 3; ++k) rest.push_back({corners[k], whole.corner[k], depth_[corners[k]], k, -1});
+        const auto by_depth = [](const Vertex& a, const Vertex& b) { return a.z < b.z; };
+        const auto [nearest, farthest] = std::minmax_element(rest.begin(), rest.end(), by_depth);
+        const double last = farthest->z;
+        auto level = std::upper_bound(levels_.begin(), levels_.end(), nearest->z);
+        for (; level != levels_.end() && *level < last; ++level) {
+            Polygon before, after;
+            split(rest, corners, static_cast<std::size_t>(level - levels_.begin()), before, after);
+            keep(before, number);
+            rest = std::move(after);
         }
-        int k = 0;  // one cut: that edge; two: the edge that stays
-        while ((middle[k] == kWhole) == (cuts == 1)) ++k;
-        if (cuts == 1) {
-            add(corner(k), edge(k), corner(k + 2));
-            add(edge(k), corner(k + 1), corner(k + 2));
-        } else {
-            add(corner(k), corner(k + 1), edge(k + 1));
-            add(corner(k), edge(k + 1), edge(k + 2));
-            add(edge(k + 1), corner(k + 2), edge(k + 2));
+        keep(rest, number);
+    }
+
+    void split(const Polygon& polygon, const std::uint32_t* corners, std::size_t level, Polygon& before,
+               Polygon& after) {
+        const double z = levels_[level];
+        for (std::size_t i = 0; i < polygon.size(); ++i) {
+            const Vertex &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+            if (a.z <= z) before.push_back(a);
+            if (a.z >= z) after.push_back(a);
+            if ((a.z < z && b.z > z) || (a.z > z && b.z < z)) {
+                // Only the triangle's own edges go on in depth.
+                const int edge = a.edge >= 0 ? a.edge : b.edge >= 0 ? b.edge : a.corner;
+                const Vertex cut = cut_of(edge, corners, level);
+                before.push_back(cut);
+                after.push_back(cut);
+            }
         }
-        return true;
     }
 
-    // The point in the middle of an edge that needs a cut, else kWhole.
-    std::uint32_t middle_of(std::uint32_t a, std::uint32_t b) {
-        const std::uint64_t key = (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b);
-        const auto [found, is_new] = middles_.try_emplace(key, kWhole);
-        if (is_new && needs_cut(a, b)) found->second = add_middle(a, b);
-        return found->second;
-    }
-
-    std::uint32_t add_middle(std::uint32_t a, std::uint32_t b) {
-        const auto point = static_cast<std::uint32_t>(knots_[0].points.size());
-        for (KnotPoints& knot : knots_) {
-            const glm::dvec4 middle = 0.5 * (glm::dvec4(knot.points[a]) + glm::dvec4(knot.points[b]));
-            const auto z = static_cast<float>(0.5 * (double{depth_of(knot, a)} + depth_of(knot, b)));
-            glm::vec4 p(middle);
-            p.w = static_cast<float>(knot.view.coc(p.x, p.y, z));
-            knot.points.push_back(p);
-            if (!knot.depths.empty()) knot.depths.push_back(z);
+    void keep(const Polygon& polygon, std::uint32_t number) {
+        for (std::size_t i = 2; i < polygon.size(); ++i) {
+            Piece piece;
+            piece.source = number;
+            const Vertex* fan[3] = {&polygon[0], &polygon[i - 1], &polygon[i]};
+            for (int k = 0; k < 3; ++k) {
+                result_.indices.push_back(fan[k]->point);
+                piece.corner[k] = fan[k]->place;
+            }
+            result_.pieces.push_back(piece);
         }
-        result_.midpoints.push_back({a, b});
-        return point;
     }
 
-    // The same for (b, a), and for an edge of another triangle that lies at the same place: ends in order of their
-    // numbers.
-    bool needs_cut(std::uint32_t a, std::uint32_t b) const {
-        const auto order = [&](std::uint32_t i) {
-            const glm::vec4& p = knots_[0].points[i];
+    // The same numbers whichever triangle asks: the edge's ends are put in order of where they are.
+    Vertex cut_of(int edge, const std::uint32_t* corners, std::size_t level) {
+        const Piece whole;
+        int from = edge, to = (edge + 1) % 3;
+        const auto order = [&](int k) {
+            const glm::vec4& p = knots_[0].points[corners[k]];
             return std::array{p.x, p.y, p.z};
         };
-        if (order(b) < order(a)) std::swap(a, b);
-        for (std::size_t k = 0; k < knots_.size(); ++k)
-            if (error(knots_[k], bends_[k], a, b) > kMaxError) return true;
-        return false;
+        if (order(to) < order(from)) std::swap(from, to);
+        const std::uint32_t a = corners[from], b = corners[to];
+        const double s = (levels_[level] - depth_[a]) / (depth_[b] - depth_[a]);
+        const auto [found, is_new] = points_.try_emplace({a, b, level}, 0u);
+        if (is_new) found->second = add_point({a, b, s});
+        const glm::vec2 place = whole.corner[from] + static_cast<float>(s) * (whole.corner[to] - whole.corner[from]);
+        return {found->second, place, levels_[level], -1, edge};
     }
 
-    // Of the radius along the edge, in pixels, where it lies in front of the camera.
-    static double error(const KnotPoints& knot, const std::vector<double>& bends, std::uint32_t a, std::uint32_t b) {
-        const View& view = knot.view;
-        const glm::dvec4 p(knot.points[a]), q(knot.points[b]);
-        const double z0 = depth_of(knot, a), z1 = depth_of(knot, b);
-        double worst = 0.0;
-        const auto look_at = [&](double s) {
-            const glm::dvec4 m = p + s * (q - p);
-            const double z = z0 + s * (z1 - z0);
-            if (z >= view.depth_near && m.z >= view.w_near())
-                worst = std::max(worst, std::abs(m.w - view.coc(m.x, m.y, z)) / m.z);
-        };
-        for (const double s : {0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875}) look_at(s);
-        for (const double z : bends)
-            if ((z0 < z) != (z1 < z)) look_at((z - z0) / (z1 - z0));
-        return worst;
-    }
-
-    // False only for a triangle that is out of the picture at all times: radii do not fall with depth, so those of the
-    // corners are the largest.
-    bool may_be_seen(const std::array<std::uint32_t, 3>& corners) const {
-        constexpr double kMargin = 2.0;
-        double x0 = 1e30, x1 = -1e30, y0 = 1e30, y1 = -1e30, radius = kMargin;
-        for (const KnotPoints& knot : knots_)
-            for (const std::uint32_t i : corners) {
-                const glm::dvec4 p(knot.points[i]);
-                if (!(p.z >= knot.view.w_near())) return true;
-                x0 = std::min(x0, p.x / p.z), x1 = std::max(x1, p.x / p.z);
-                y0 = std::min(y0, p.y / p.z), y1 = std::max(y1, p.y / p.z);
-                radius = std::max(radius, std::abs(p.w) / p.z + kMargin);
-            }
-        const View& view = knots_[0].view;
-        const double half_width = 0.5 * view.width + radius;
-        const double half_height = 0.5 * view.height + radius * std::max(1.0, view.lens.ratio);
-        return x0 <= half_width && x1 >= -half_width && y0 <= half_height && y1 >= -half_height;
+    std::uint32_t add_point(const PointOnEdge& on) {
+        const auto point = static_cast<std::uint32_t>(knots_[0].points.size());
+        for (KnotPoints& knot : knots_) {
+            const glm::dvec4 p(knot.points[on.a]), q(knot.points[on.b]);
+            const double z0 = depth_of(knot, on.a), z1 = depth_of(knot, on.b);
+            glm::vec4 added(p + on.share * (q - p));
+            const auto z = static_cast<float>(z0 + on.share * (z1 - z0));
+            added.w = static_cast<float>(knot.view.coc(added.x, added.y, z));
+            knot.points.push_back(added);
+            if (!knot.depths.empty()) knot.depths.push_back(z);
+        }
+        result_.cut_points.push_back(on);
+        return point;
     }
 
     std::span<const std::uint32_t> indices_;
     std::vector<KnotPoints>& knots_;
-    std::vector<std::vector<double>> bends_;
-    std::unordered_map<std::uint64_t, std::uint32_t> middles_;
-    std::vector<Open> open_;
+    std::vector<double> depth_;   // of each of the Primitive's vertices, the mean of the knots
+    std::vector<double> levels_;  // depths at which edges are cut
+    std::map<std::tuple<std::uint32_t, std::uint32_t, std::size_t>, std::uint32_t> points_;
     CutTriangles result_;
 };
 
 }  // namespace
+
+std::vector<double> cut_depths(std::span<const View> views, double motion) {
+    double first = 1e30, last = -1e30;
+    for (const View& view : views)
+        if (const std::vector<double> depths = bends(view); !depths.empty()) {
+            first = std::min(first, depths.front());
+            last = std::max(last, depths.back());
+        }
+    if (!(first <= last)) return {};
+    const double least = last / 500.0, length = last - first;
+    motion = std::min(motion, 4.0 * last);  // what moves farther is a corner of something huge
+    const double begin = std::max(views[0].depth_near, first - motion), end = last + motion;
+    // What stands still may step as far as c is straight; what moves, as far as it is from anywhere.
+    double longest = end - begin;
+    constexpr int kPlaces = 256;
+    for (int i = 0; i < kPlaces && motion > 0.0; ++i) {
+        const double z = first + length * (1.5 * i / kPlaces - 0.5);
+        if (z >= views[0].depth_near) longest = std::min(longest, straight_from(views, z, std::max(length, least)));
+    }
+    std::vector<double> depths;
+    for (double z = begin; z < end;) {
+        depths.push_back(z);
+        z += std::max(least, motion > 0.0 ? longest : straight_from(views, z, end - z));
+    }
+    depths.push_back(end);
+    return depths;
+}
 
 CutTriangles cut_triangles(std::span<const std::uint32_t> indices, std::vector<KnotPoints>& knots) {
     return Cutter(indices, knots).cut();

@@ -165,7 +165,7 @@ void cut_part(const Primitive& primitive, Moments& moments, PosedPart& posed) {
             cut[k].depths.assign(posed.depths.begin() + k * n, posed.depths.begin() + (k + 1) * n);
     }
     posed.cut = cut_triangles(primitive.indices, cut);
-    part.midpoints = std::move(posed.cut.midpoints);
+    part.cut_points = std::move(posed.cut.cut_points);
     part.vertex_count = static_cast<std::uint32_t>(cut[0].points.size());
     part.triangle_count = static_cast<std::uint32_t>(posed.cut.pieces.size());
     posed.points.clear();

@@ -19,6 +19,12 @@
 
 namespace pentaprism {
 
+/// A vertex that lies between two others, `share` of the way from a to b.
+struct PointOnEdge {
+    std::uint32_t a = 0, b = 0;
+    double share = 0.5;
+};
+
 /// One placed primitive: the triangles [first_triangle, first_triangle + triangle_count).
 struct Part {
     Placement placement;
@@ -30,9 +36,8 @@ struct Part {
     bool two_sided = true;  ///< false: back faces are not hit
     bool mirrored = false;  ///< corners were swapped so that front faces are counter-clockwise again
     AlphaMode alpha_mode = AlphaMode::kOpaque;
-    Index material = kNone;  ///< into Scene::materials, or kNone
-    /// The last vertices, which cuts added: each lies in the middle between two earlier ones.
-    std::vector<std::array<std::uint32_t, 2>> midpoints;
+    Index material = kNone;               ///< into Scene::materials, or kNone
+    std::vector<PointOnEdge> cut_points;  ///< the last vertices, which cuts added
 };
 
 /// A triangle that was cut (frame/cut_triangles.h): which of its part's Primitive it is a piece of, and where its

@@ -15,8 +15,8 @@ namespace pentaprism::gl {
 /// Names of the tests that have a twin.
 std::vector<std::string> culling_names();
 
-/// `auto` is bbox here: asking costs more than the exact test where each sample is an invocation of its own Throws Error(kUsage) for a test without a twin and for buckets, of which a
-/// sample on its own is none.
+/// `auto` is bbox here: asking costs more than the exact test where each sample is an invocation of its own Throws
+/// Error(kUsage) for a test without a twin and for buckets, of which a sample on its own is none.
 Culling parse_gl_culling(const std::string& choice);
 
 /// Shader text that defines `bool culling_keeps(LocalTriangle T, LocalSample sampled, ivec2 place)`: all steps;

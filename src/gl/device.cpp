@@ -134,6 +134,11 @@ void Device::look_around() {
     check("asking the driver");
 }
 
+const Program& Device::program(const std::string& name, const std::function<Program()>& make) {
+    const auto known = programs_.find(name);
+    return known != programs_.end() ? known->second : programs_.emplace(name, make()).first->second;
+}
+
 std::vector<std::string> Device::defines() const {
     return fused_ ? std::vector<std::string>{"FUSED_FMA"} : std::vector<std::string>{};
 }

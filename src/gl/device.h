@@ -3,9 +3,13 @@
 // belong to one thread at a time, so whoever works with it holds a Current.
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <mutex>
 #include <string>
 #include <vector>
+
+#include "gl/program.h"
 
 namespace pentaprism::gl {
 
@@ -34,6 +38,9 @@ class Device {
     int max_size() const { return max_size_; }                   ///< pixels a side of a framebuffer
     std::int64_t most_entries() const { return most_entries_; }  ///< samples that a buffer holds
 
+    /// The program of that name, kept for all frames; made by `make` when it is first asked for.
+    const Program& program(const std::string& name, const std::function<Program()>& make);
+
     /// Names that shaders ask for: FUSED_FMA if fma() rounds once.
     std::vector<std::string> defines() const;
 
@@ -46,6 +53,7 @@ class Device {
     std::recursive_mutex mutex_;
     int depth_ = 0;  // Currents of the thread that has it
     std::string name_;
+    std::map<std::string, Program> programs_;
     int samples_ = 1, max_size_ = 0;
     std::int64_t most_entries_ = 0;
     bool fused_ = false;

@@ -12,13 +12,21 @@ namespace {
 
 constexpr GLuint kSampleUnit = 0, kOpacityUnits = 1, kSeenUnit = 0, kTestedImage = 0, kCoveredImage = 1;
 
-Program raster_program(const Device& device, const std::string& culling) {
+const Program& raster_program(Device& device, const std::string& culling) {
     const std::string shader = culling_shader(parse_gl_culling(culling));
-    const ShaderSource extra[] = {{"culling", shader}};
-    return Program({{GL_VERTEX_SHADER, "gl/raster.vert.glsl"},
-                    {GL_GEOMETRY_SHADER, "gl/raster.geom.glsl"},
-                    {GL_FRAGMENT_SHADER, "gl/raster.frag.glsl"}},
-                   device.defines(), extra);
+    return device.program("raster " + shader, [&] {
+        const ShaderSource extra[] = {{"culling", shader}};
+        return Program({{GL_VERTEX_SHADER, "gl/raster.vert.glsl"},
+                        {GL_GEOMETRY_SHADER, "gl/raster.geom.glsl"},
+                        {GL_FRAGMENT_SHADER, "gl/raster.frag.glsl"}},
+                       device.defines(), extra);
+    });
+}
+
+const Program& collector_program(Device& device) {
+    return device.program("collect", [&] {
+        return Program({{GL_COMPUTE_SHADER, "gl/collect.comp.glsl"}}, device.defines());
+    });
 }
 
 void set_view(const Program& program, const View& view) {
@@ -51,7 +59,7 @@ std::vector<std::uint32_t> read_counters(GLuint image, const Region& region) {
 
 }  // namespace
 
-Pipeline::Pipeline(const Device& device, const Frame& frame, const SampleTable& table, const std::string& culling,
+Pipeline::Pipeline(Device& device, const Frame& frame, const SampleTable& table, const std::string& culling,
                    const Region& largest)
     : frame_(frame),
       table_(table),
@@ -62,7 +70,7 @@ Pipeline::Pipeline(const Device& device, const Frame& frame, const SampleTable& 
       opacity_(frame),
       samples_(static_cast<std::size_t>(width_) * height_ * slots_),
       raster_(raster_program(device, culling)),
-      collector_({{GL_COMPUTE_SHADER, "gl/collect.comp.glsl"}}, device.defines()),
+      collector_(collector_program(device)),
       collected_(static_cast<std::size_t>(width_) * height_ * slots_ * sizeof(glm::uvec2)),
       seen_(make_texture(GL_TEXTURE_2D_MULTISAMPLE)),
       tested_(counter_image(width_, height_)),
@@ -74,9 +82,6 @@ Pipeline::Pipeline(const Device& device, const Frame& frame, const SampleTable& 
     glNamedFramebufferTexture(framebuffer_, GL_COLOR_ATTACHMENT0, seen_, 0);
     glNamedFramebufferRenderbuffer(framebuffer_, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
     check("making the buffers of a frame");
-    set_view(raster_, frame.view);
-    raster_.set("samples_per_pixel", table.spp());
-    set_view(collector_, frame.view);
 }
 
 void Pipeline::set_uniforms(const Region& region, int pass_slots) const {
@@ -86,7 +91,9 @@ void Pipeline::set_uniforms(const Region& region, int pass_slots) const {
         program->set("region_cell", region.cell_x, region.cell_y);
         program->set("region_cell_columns", region.cell_columns);
         program->set("pass_slots", pass_slots);
+        set_view(*program, frame_.view);
     }
+    raster_.set("samples_per_pixel", table_.spp());
 }
 
 void Pipeline::draw() const {

@@ -20,16 +20,12 @@ struct RegionHits {
 class Pipeline {
   public:
     /// `largest`: no region has more columns or rows of cells. Frame and table must outlive it.
-    Pipeline(const Device& device, const Frame& frame, const SampleTable& table, const std::string& culling,
+    Pipeline(Device& device, const Frame& frame, const SampleTable& table, const std::string& culling,
              const Region& largest);
 
     RegionHits render(const Region& region);
 
-    /// Most samples of a pass.
-    int slots() const { return slots_; }
-
   private:
-    void make_framebuffer(const Region& largest);
     void set_uniforms(const Region& region, int pass_slots) const;
     void draw() const;
     void collect(const Region& region, int first_slot, int pass_slots, RegionHits& hits);
@@ -40,7 +36,7 @@ class Pipeline {
     FrameUpload geometry_;
     OpacityUpload opacity_;
     SampleUpload samples_;
-    Program raster_, collector_;
+    const Program &raster_, &collector_;
     Buffer collected_;
     Object<TextureKind> seen_, tested_, covered_;
     Object<RenderbufferKind> depth_;

@@ -39,15 +39,6 @@ bool is_usable(MovingTriangle m) {
            all(lessThanEqual(abs(m.z_r), vec3(kLargestCoordinate)));
 }
 
-// Some vertex may be behind the camera plane; the end of the path as the exact test computes it counts, too.
-bool reaches_camera(MovingTriangle m) {
-    for (int i = 0; i < 3; ++i) {
-        precise float step = float(double(m.r[i].z) - double(m.q[i].z)), end = m.q[i].z + step;
-        if (min(min(m.q[i].z, m.r[i].z), end) < w_near) return true;
-    }
-    return false;
-}
-
 void emit(MovingTriangle m, vec4 box, int x, int y) {
     bound.q = m.q;
     bound.r = m.r;
@@ -73,7 +64,7 @@ void main() {
     ivec4 pixels = covered_pixels(bounds, region);
     if (pixels.x >= pixels.y || pixels.z >= pixels.w) return;
     if (!two_sided && facing(m) == kBack) return;
-    vec4 box = reaches_camera(m) ? vec4(bounds.x0, bounds.x1, bounds.y0, bounds.y1) : vec4(-1e30, 1e30, -1e30, 1e30);
+    vec4 box = exact_box(m, bounds);
     emit(m, box, pixels.x, pixels.z);
     emit(m, box, pixels.y, pixels.z);
     emit(m, box, pixels.x, pixels.w);

@@ -3,6 +3,7 @@
 #include <pentaprism/error.h>
 
 #ifdef PENTAPRISM_HAVE_GL
+#include "gl/culling.h"
 #include "gl/device.h"
 #include "gl/gl_rasterizer.h"
 #endif
@@ -14,6 +15,12 @@ namespace pentaprism {
 std::unique_ptr<const Rasterizer> make_gl_rasterizer(const Frame& frame, const SampleTable& table,
                                                      const std::string& culling, const PixelRect& limits) {
     return std::make_unique<const gl::GlRasterizer>(frame, table, culling, limits);
+}
+
+std::vector<std::string> gl_culling_choices() {
+    std::vector<std::string> names = gl::culling_names();
+    names.insert(names.begin(), "auto");
+    return names;
 }
 
 std::string gl_device_name() {
@@ -32,6 +39,10 @@ namespace {
 std::unique_ptr<const Rasterizer> make_gl_rasterizer(const Frame&, const SampleTable&, const std::string&,
                                                      const PixelRect&) {
     refuse();
+}
+
+std::vector<std::string> gl_culling_choices() {
+    return {};
 }
 
 std::string gl_device_name() {

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "bound/screen_bounds.h"
 #include "cover/cover.h"
@@ -24,6 +25,9 @@ class Rasterizer {
 /// is not there in GLSL.
 std::unique_ptr<const Rasterizer> make_gl_rasterizer(const Frame& frame, const SampleTable& table,
                                                      const std::string& culling, const PixelRect& limits);
+
+/// What `--culling` takes with this backend, without combinations; empty in a build without it.
+std::vector<std::string> gl_culling_choices();
 
 /// Renderer and version of the driver; throws as make_gl_rasterizer().
 std::string gl_device_name();

@@ -5,6 +5,8 @@
 #include <cerrno>
 #include <fcntl.h>
 #include <pentaprism/error.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
 
@@ -25,26 +27,62 @@ void sync_folder(const std::filesystem::path& folder) {
     ::close(descriptor);
 }
 
+using Stat = struct stat;
+
+bool is_same_file(const Stat& a, const Stat& b) {
+    return a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
+// Opens the file empty, as the only process that writes it: the lock ends with the process, however that ends. Returns
+// a descriptor, or -1 with errno; EBUSY if another process holds it. Where there are no locks, as on some network file
+// systems, it does without.
+int open_alone(const std::filesystem::path& part) {
+    for (;;) {
+        const int descriptor = ::open(part.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+        Stat opened{}, named{};
+        if (descriptor < 0 || ::fstat(descriptor, &opened) != 0 || !S_ISREG(opened.st_mode)) return descriptor;
+        if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+            ::close(descriptor);
+            errno = EBUSY;
+            return -1;
+        }
+        // Its name may have gone with the other process's file before the lock was had.
+        if (::stat(part.c_str(), &named) == 0 && is_same_file(opened, named)) {
+            if (::ftruncate(descriptor, 0) == 0) return descriptor;
+            const int error = errno;
+            ::close(descriptor);
+            errno = error;
+            return -1;
+        }
+        ::close(descriptor);
+    }
+}
+
 }  // namespace
 
 PartFile::PartFile(const std::filesystem::path& file) : file_(file), part_(file) {
     part_ += ".part";
     std::error_code ignored;
     if (std::filesystem::is_directory(file_, ignored)) fail(EISDIR);
-    stream_.reset(std::fopen(part_.c_str(), "wbe"));
+    const int descriptor = open_alone(part_);
+    if (descriptor >= 0) stream_.reset(::fdopen(descriptor, "wb"));
     if (!stream_) fail(errno);
+    lock_ = ::dup(descriptor);  // the lock outlives the stream, until the file has its name
 }
 
 PartFile::~PartFile() {
-    if (committed_ || !stream_) return;
-    stream_.reset();
-    std::error_code ignored;
-    std::filesystem::remove(part_, ignored);
+    if (stream_) {
+        std::error_code ignored;
+        std::filesystem::remove(part_, ignored);
+    }
+    if (lock_ >= 0) ::close(lock_);
 }
 
 void PartFile::fail(int system_error) {
     if (failure_.empty()) {
-        failure_ = file_.string() + ": cannot write (" + std::generic_category().message(system_error) + ")";
+        const std::string why =
+            system_error == EBUSY ? "another process is writing it" : std::generic_category().message(system_error);
+        failure_ = file_.string() + ": cannot write (" + why + ")";
     }
     throw Error(ErrorKind::kOutput, failure_);
 }
@@ -82,7 +120,6 @@ void PartFile::commit() {
         ::unlink(part_.c_str());
         fail(error);
     }
-    committed_ = true;
     sync_folder(file_.parent_path());
 }
 

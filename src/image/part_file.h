@@ -9,8 +9,8 @@
 
 namespace pentaprism {
 
-/// Every call throws Error(kOutput), "NAME: cannot write (what the system said)". Destroyed before commit(), it removes
-/// its .part.
+/// One process at a time: a second one is refused while the first lives. Every call throws Error(kOutput), "NAME:
+/// cannot write (what the system said)". Destroyed before commit(), it removes its .part.
 class PartFile {
   public:
     explicit PartFile(const std::filesystem::path& file);
@@ -38,7 +38,7 @@ class PartFile {
     std::filesystem::path file_, part_;
     std::unique_ptr<std::FILE, Close> stream_;
     std::string failure_;
-    bool committed_ = false;
+    int lock_ = -1;
 };
 
 }  // namespace pentaprism

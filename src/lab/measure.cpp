@@ -24,11 +24,12 @@ bool has_own_samples(const MethodSettings& settings) {
            settings.visibility == VisibilityMethod::kInterleaved;
 }
 
-BenchRow counted_row(FrameWalk& walk, const std::string& method) {
+BenchRow counted_row(FrameWalk& walk, const std::string& method, Backend backend) {
     reset_peak_memory();
     const FrameWalk::Counts counts = walk.count(method, nullptr);
     BenchRow row;
     row.method = method;
+    if (backend == Backend::kGl) row.backend = "gl";
     const MethodSettings settings = settings_of(method, {});
     row.conservative = settings.culling == "auto" || is_conservative(parse_culling(settings.culling));
     row.own_arithmetic = has_own_arithmetic(method);
@@ -61,8 +62,10 @@ class Walks {
         Entry& entry = entries_[shared ? settings.visibility : VisibilityMethod::kStochastic];
         if (entry.walk) return *entry.walk;
         if (shared) entry.samples.emplace(make_samples(picture_.frame, picture_.samples.spp(), settings));
+        // A graphics card renders whole pictures: some tiles of one would be timed wrongly.
+        const std::int64_t most_tests = options_.method.backend == Backend::kCpu ? options_.most_tests : 0;
         entry.walk = std::make_unique<FrameWalk>(picture_.frame, shared ? *entry.samples : picture_.samples,
-                                                 options_.method, options_.most_tests, keep_going_);
+                                                 options_.method, most_tests, keep_going_);
         entry.walk->make_reference();
         return *entry.walk;
     }
@@ -87,7 +90,7 @@ Measurements measure_methods(const PosedPicture& picture, const MeasureOptions& 
     std::vector<BenchRow>& rows = result.rows;
     for (const std::string& method : options.methods) {
         FrameWalk& walk = walks.of(method);
-        rows.push_back(counted_row(walk, method));
+        rows.push_back(counted_row(walk, method, options.method.backend));
         // A frame and its questions make one round, and the counting run has told how long a frame takes.
         const double round_ms = std::max(1e-3, 2.0 * rows.back().frame_ms * walk.share());
         rows.back().runs = static_cast<int>(std::clamp(1000.0 * options.seconds / round_ms, 1.0, 1.0 * options.runs));

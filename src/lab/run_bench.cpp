@@ -8,6 +8,7 @@
 #include <pentaprism/verify.h>
 
 #include "base/parallel.h"
+#include "gl/rasterizer.h"
 #include "lab/effects.h"
 #include "lab/images.h"
 #include "lab/machine.h"
@@ -27,7 +28,8 @@ std::vector<BenchEffect> chosen_effects(const BenchPlan& plan) {
 }
 
 std::vector<std::string> chosen_methods(const BenchPlan& plan) {
-    if (plan.methods.empty()) return bench_default_methods();
+    if (plan.methods.empty())
+        return plan.settings.method.backend == Backend::kGl ? gl_culling_choices() : bench_default_methods();
     for (const std::string& method : plan.methods) settings_of(method, plan.settings.method);
     return plan.methods;
 }

@@ -144,7 +144,7 @@ FrameWalk::FrameWalk(const Frame& frame, const SampleTable& samples, const Metho
 }
 
 void FrameWalk::choose_tiles(std::int64_t most_tests) {
-    tiles_ = visibility_of("none").tiles();
+    tiles_ = processors_own("none").tiles();
     if (most_tests <= 0) return;
     const Bins bins(frame_, settings_.tile_size, whole(frame_));
     std::int64_t tests = 0;
@@ -166,6 +166,12 @@ void FrameWalk::choose_tiles(std::int64_t most_tests) {
 
 Visibility FrameWalk::visibility_of(const std::string& method) const {
     return Visibility(frame_, samples_, settings_of(method, settings_), whole(frame_));
+}
+
+Visibility FrameWalk::processors_own(const std::string& method) const {
+    MethodSettings settings = settings_of(method, settings_);
+    settings.backend = Backend::kCpu;
+    return Visibility(frame_, samples_, settings, whole(frame_));
 }
 
 double FrameWalk::for_each_tile(const std::string& what, const TileWorkBody& body) {
@@ -190,7 +196,7 @@ std::int64_t FrameWalk::samples() const {
 }
 
 void FrameWalk::make_reference() {
-    const Visibility visibility = visibility_of("none");
+    const Visibility visibility = processors_own("none");
     reference_.resize(tiles_.size());
     for_each_tile("none: the reference", [&](std::size_t i, Hits&) {
         CoverCounts counts;
@@ -256,7 +262,7 @@ FrameWalk::Timed FrameWalk::time_setup(const std::string& method) {
     Timed timed;
     const MethodSettings settings = settings_of(method, settings_);
     const auto start = Clock::now();
-    if (settings.culling == "auto") {
+    if (settings.culling == "auto" || settings.backend != Backend::kCpu) {
         const Visibility visibility = visibility_of(method);
         timed.ms = milliseconds_since(start);
         return timed;
@@ -280,7 +286,7 @@ BenchCell FrameWalk::describe() {
     struct Sums {
         double samples = 0, hits = 0, motion = 0, blur = 0;
     };
-    const Visibility visibility = visibility_of(samples_.pattern() == SamplePattern::kFree ? "auto" : "none");
+    const Visibility visibility = processors_own(samples_.pattern() == SamplePattern::kFree ? "auto" : "none");
     const std::vector<Tile>& all = visibility.tiles();
     std::vector<Sums> sums(all.size());  // added up in the order of tiles, so that the result is always the same
     parallel_for(all.size(), [&](std::size_t i) {

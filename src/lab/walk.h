@@ -41,7 +41,7 @@ class FrameWalk {
     /// Samples of the tiles that are walked.
     std::int64_t samples() const;
 
-    /// Keeps the hits of `none`. Before count().
+    /// Keeps the hits of `none`, found by the processor. Before count().
     void make_reference();
     std::int64_t reference_bytes() const;
 
@@ -60,7 +60,8 @@ class FrameWalk {
     };
     Timed time_frame(const std::string& method);
 
-    /// The same of all that comes before exact tests (BenchRow::setup_ms): nothing is tested.
+    /// The same of all that comes before exact tests (BenchRow::setup_ms): nothing is tested. Of another backend than
+    /// the processor, the upload alone.
     Timed time_setup(const std::string& method);
 
     /// Motion, blur and coverage of the whole picture.
@@ -69,6 +70,7 @@ class FrameWalk {
   private:
     using TileWorkBody = std::function<void(std::size_t i, Hits& hits)>;
     Visibility visibility_of(const std::string& method) const;
+    Visibility processors_own(const std::string& method) const;  // whatever the backend that is measured
     void choose_tiles(std::int64_t most_tests);
     double for_each_tile(const std::string& what, const TileWorkBody& body);
 

@@ -30,7 +30,7 @@ PixelRect crop_of(const ImageSettings& image) {
 }
 
 // glm matrices are column-major, as FrameInfo's.
-void store(const glm::dmat4& matrix, std::array<double, 16>& out) {
+void copy_matrix(const glm::dmat4& matrix, std::array<double, 16>& out) {
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row) out[4 * column + row] = matrix[column][row];
 }
@@ -108,12 +108,16 @@ FrameInfo FrameTiles::describe(std::span<const Index> animations, double number)
     projection[3][3] = view.perspective ? 0.0 : 1.0;
     info.fx = view.fx;
     info.fy = view.fy;
-    store(to_camera, info.world_to_camera);
-    store(projection * to_camera, info.world_to_ndc);
+    copy_matrix(to_camera, info.world_to_camera);
+    copy_matrix(projection * to_camera, info.world_to_ndc);
     for (int k = 0; k <= info.max_motion_segments; ++k) {
         FrameInfo::Knot knot;
         knot.time = view.shutter.at(static_cast<double>(k) / info.max_motion_segments);
-        store(world_to_camera(view, evaluate(*frame_.scene, animations, knot.time)), knot.world_to_camera);
+        const Pose pose = evaluate(*frame_.scene, animations, knot.time);
+        copy_matrix(world_to_camera(view, pose), knot.world_to_camera);
+        const View now = view_at(*frame_.scene, view, pose);
+        knot.fx = now.fx, knot.fy = now.fy;
+        knot.lens_radius = now.lens.radius, knot.focus_distance = now.lens.focus_distance;
         info.knots.push_back(knot);
         if (view.shutter.close == view.shutter.open) break;  // one instant
     }
@@ -152,25 +156,36 @@ void FrameTiles::make_aovs(double number) {
     }
 }
 
-void FrameTiles::render(const Tile& tile, Worker& worker) {
+void FrameTiles::cover_and_shade(const Tile& tile, Worker& worker) {
     const auto start = Clock::now();
     CoverCounts counts;
     visibility_->cover(tile, worker.hits, counts, tests_ ? &*tests_ : nullptr);
     const auto covered = Clock::now();
     costs_.shaded += worker.shader.shade(*shading_, *samples_, tile, worker.hits, worker.shade);
-    const auto shaded = Clock::now();
-    worker.sums.start(tile, filter_.reach(), channel_count(info_.aovs));
-    filter_.add(*samples_, worker.hits, worker.shade, worker.sums);
-    if (aovs_) aovs_->resolve(*samples_, worker.hits, worker.shade, worker.aovs, worker.sums);
-    const auto resolved = Clock::now();
     costs_.cover_ns += nanoseconds(covered - start);
-    costs_.shade_ns += nanoseconds(shaded - covered);
-    costs_.resolve_ns += nanoseconds(resolved - shaded);
+    costs_.shade_ns += nanoseconds(Clock::now() - covered);
     costs_.tested += counts.tested;
     costs_.covered += counts.covered;
     const int width = std::min(tile.x1, info_.x1) - std::max(tile.x0, info_.x0);
     const int height = std::min(tile.y1, info_.y1) - std::max(tile.y0, info_.y0);
     costs_.pixels += std::int64_t{std::max(0, width)} * std::max(0, height);
+}
+
+void FrameTiles::render(const Tile& tile, Worker& worker) {
+    cover_and_shade(tile, worker);
+    const auto start = Clock::now();
+    worker.sums.start(tile, filter_.reach(), channel_count(info_.aovs));
+    filter_.add(*samples_, worker.hits, worker.shade, worker.sums);
+    if (aovs_) aovs_->resolve(*samples_, worker.hits, worker.shade, worker.aovs, worker.sums);
+    costs_.resolve_ns += nanoseconds(Clock::now() - start);
+}
+
+void FrameTiles::store(const Tile& tile, Worker& worker) {
+    cover_and_shade(tile, worker);
+    const auto start = Clock::now();
+    store_samples(tile, *samples_, worker.hits, worker.shade, background_of(*frame_.scene, settings_.image),
+                  worker.samples);
+    costs_.resolve_ns += nanoseconds(Clock::now() - start);
 }
 
 void FrameTiles::fill(RenderStats& stats) const {

@@ -13,6 +13,7 @@
 #include "resolve/aov_film.h"
 #include "resolve/flow.h"
 #include "resolve/named_ids.h"
+#include "resolve/stored_sample.h"
 #include "resolve/tile_sums.h"
 #include "shade/shade_tile.h"
 
@@ -30,6 +31,7 @@ class FrameTiles {
     FrameTiles(const Scene& scene, const KeptParts& kept, const RenderSettings& settings, double number);
 
     const FrameInfo& info() const { return info_; }
+    const View& view() const { return frame_.view; }
     int reach() const { return filter_.reach(); }
     const std::vector<Tile>& tiles() const { return visibility_->tiles(); }
 
@@ -40,9 +42,12 @@ class FrameTiles {
         TileShade shade;
         TileAovs::Worker aovs;
         TileSums sums;
+        std::vector<StoredSample> samples;
     };
     /// Leaves the tile in worker.sums. Thread-safe for different workers.
     void render(const Tile& tile, Worker& worker);
+    /// The same, but leaves its samples in worker.samples.
+    void store(const Tile& tile, Worker& worker);
 
     /// All but the total time. `samples` are those of the delivered pixels in the tiles that were rendered.
     void fill(RenderStats& stats) const;
@@ -51,6 +56,7 @@ class FrameTiles {
     struct Costs {
         std::atomic<std::int64_t> cover_ns{0}, shade_ns{0}, resolve_ns{0}, tested{0}, covered{0}, shaded{0}, pixels{0};
     };
+    void cover_and_shade(const Tile& tile, Worker& worker);
     FrameInfo describe(std::span<const Index> animations, double number) const;
     void make_aovs(double number);
 

@@ -11,6 +11,7 @@
 #include "base/cpu.h"
 #include "base/parallel.h"
 #include "base/pool.h"
+#include "gl/rasterizer.h"
 #include "render/frame_tiles.h"
 #include "render/picture_rows.h"
 #include "render/shard_stream.h"
@@ -68,6 +69,7 @@ void Renderer::run(const RenderSettings& settings, double number, RenderStats& s
     stats.peak_mb = peak_megabytes();
     stats.threads = thread_count();
     stats.isa = isa_name(cpu_isa());
+    if (settings.method.backend == Backend::kGl) stats.device = gl_device_name();
 }
 
 void Renderer::render(const RenderSettings& settings, double number, RowSink& sink, RenderStats& stats,
@@ -88,27 +90,58 @@ void Renderer::render(const RenderSettings& settings, double number, RowSink& si
     });
 }
 
+namespace {
+
+constexpr std::size_t kRun = 256;
+
+// Makes the tiles in parallel and writes them in order. `make` leaves one in the worker; `kept` is the member of it
+// that holds it, and `write` its way to the output; `run` of them are kept until those before are written.
+template <class T, class Make, class Write>
+void write_tiles(const std::vector<Tile>& tiles, std::size_t run, const Progress& progress, T FrameTiles::Worker::*kept,
+                 const Make& make, const Write& write) {
+    ProgressMeter meter(progress, tiles.size());
+    Pool<FrameTiles::Worker> workers;
+    std::vector<T> done(std::min(run, tiles.size()));
+    for (std::size_t first = 0; first < tiles.size(); first += run) {
+        const std::size_t count = std::min(run, tiles.size() - first);
+        parallel_for(count, [&](std::size_t i) {
+            const auto worker = workers.lease();
+            make(tiles[first + i], *worker);
+            std::swap(done[i], (*worker).*kept);
+            meter.step();
+        });
+        for (std::size_t i = 0; i < count; ++i) write(done[i]);
+    }
+}
+
+RenderSettings in_cells(RenderSettings settings) {
+    settings.method.tile_size = kCellSize;  // what those count in who read the tiles
+    return settings;
+}
+
+}  // namespace
+
 void Renderer::render_shard(const RenderSettings& settings, double number, const Shard& shard,
                             const FileMetadata& metadata, ByteSink& out, RenderStats& stats, const Progress& progress) {
-    constexpr std::size_t kRun = 256;  // tiles that are kept until the bytes of those before are written
-    RenderSettings in_cells = settings;
-    in_cells.method.tile_size = kCellSize;  // what merging counts in
-    run(in_cells, number, stats, [&](FrameTiles& frame) {
-        const std::vector<Tile> tiles = tiles_of(frame.tiles(), shard);
-        ShardOutput output(shard, frame.info(), settings, metadata, out);
-        ProgressMeter meter(progress, tiles.size());
-        Pool<FrameTiles::Worker> workers;
-        std::vector<TileSums> done(std::min(kRun, tiles.size()));
-        for (std::size_t first = 0; first < tiles.size(); first += kRun) {
-            const std::size_t count = std::min(kRun, tiles.size() - first);
-            parallel_for(count, [&](std::size_t i) {
-                const auto worker = workers.lease();
-                frame.render(tiles[first + i], *worker);
-                std::swap(done[i], worker->sums);
-                meter.step();
-            });
-            for (std::size_t i = 0; i < count; ++i) output.write(done[i]);
-        }
+    run(in_cells(settings), number, stats, [&](FrameTiles& frame) {
+        TileOutput output(StreamKind::kShard, head_of(shard, frame.info(), frame.view(), settings, metadata), out);
+        write_tiles(
+            tiles_of(frame.tiles(), shard), kRun, progress, &FrameTiles::Worker::sums,
+            [&](const Tile& tile, FrameTiles::Worker& worker) { frame.render(tile, worker); },
+            [&](const TileSums& sums) { write_sums(sums, output); });
+        output.finish();
+    });
+}
+
+void Renderer::render_samples(const RenderSettings& settings, double number, const FileMetadata& metadata,
+                              ByteSink& out, RenderStats& stats, const Progress& progress) {
+    run(in_cells(settings), number, stats, [&](FrameTiles& frame) {
+        TileOutput output(StreamKind::kSamples, head_of({}, frame.info(), frame.view(), settings, metadata), out);
+        write_tiles(
+            frame.tiles(), std::max<std::size_t>(1, kRun / static_cast<std::size_t>(settings.image.spp)), progress,
+            &FrameTiles::Worker::samples,
+            [&](const Tile& tile, FrameTiles::Worker& worker) { frame.store(tile, worker); },
+            [&](const std::vector<StoredSample>& samples) { output.write(samples); });
         output.finish();
     });
 }

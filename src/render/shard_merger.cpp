@@ -10,8 +10,8 @@
 
 namespace pentaprism {
 
-struct ShardMerger::Part : ShardInput {
-    using ShardInput::ShardInput;
+struct ShardMerger::Part : TileInput {
+    explicit Part(std::unique_ptr<ByteSource> source) : TileInput(StreamKind::kShard, std::move(source)) {}
 };
 
 namespace {
@@ -27,7 +27,7 @@ ShardMerger::ShardMerger(std::vector<std::unique_ptr<ByteSource>> sources) {
     std::vector<std::unique_ptr<Part>> given;
     for (auto& source : sources) given.push_back(std::make_unique<Part>(std::move(source)));
 
-    const ShardHead first = given.front()->head();
+    const StreamHead first = given.front()->head();
     const std::string first_name = given.front()->name();
     const auto count = static_cast<std::size_t>(first.shard.count);
     parts_.resize(std::min(count, given.size()));
@@ -68,7 +68,7 @@ void ShardMerger::merge(RowSink& sink) {
     picture.assemble(tiles, [&](std::size_t first, std::size_t last) {
         for (std::size_t i = first; i < last; ++i) {
             sums.start(tiles[i], reach, channels);
-            parts_[i % parts_.size()]->read(sums);
+            read_sums(*parts_[i % parts_.size()], sums);
             picture.add(sums);
         }
     });

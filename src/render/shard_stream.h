@@ -1,6 +1,6 @@
 #pragma once
-// A shard as bytes (docs/develop/shards.md): mark, length of the head, head (JSON), the sums of its tiles in order,
-// hash of all that. Numbers lie as in memory, lowest byte first.
+// A shard or stored samples as bytes (docs/develop/shards.md): mark, length of the head, head (JSON), the tiles in
+// order, hash of all that. Numbers lie as in memory, lowest byte first.
 
 #include <pentaprism/shard.h>
 
@@ -10,22 +10,37 @@
 
 namespace pentaprism {
 
+enum class StreamKind { kShard, kSamples };
+
 /// What stands before the tiles.
-struct ShardHead {
+struct StreamHead {
     Shard shard;
     FrameInfo info;
-    ImageSettings image;  ///< filter, exposure and tone curve alone
+    ImageSettings image;  ///< samples per pixel, filter, exposure and tone curve alone
     FileMetadata metadata;
+    /// What stored samples are developed by beside FrameInfo.
+    struct Camera {
+        bool perspective = true;
+        double lens_ratio = 1.0;
+        bool thin_lens = true;     ///< no artist's blur, no plane of focus that leans
+        bool round = true;         ///< the aperture is a disk, everywhere in the picture
+        bool even_shutter = true;  ///< neither curve nor rolling
+    } camera;
 };
+StreamHead head_of(const Shard& shard, const FrameInfo& info, const View& view, const RenderSettings& settings,
+                   const FileMetadata& metadata);
 
 /// Those of the shard, of all tiles of a frame.
 std::vector<Tile> tiles_of(std::span<const Tile> tiles, const Shard& shard);
 
-class ShardOutput {
+class TileOutput {
   public:
-    ShardOutput(const Shard& shard, const FrameInfo& info, const RenderSettings& settings, const FileMetadata& metadata,
-                ByteSink& out);
-    void write(const TileSums& tile);
+    /// Writes the head.
+    TileOutput(StreamKind kind, const StreamHead& head, ByteSink& out);
+    template <class T>
+    void write(const std::vector<T>& numbers) {
+        write(numbers.data(), numbers.size() * sizeof(T));
+    }
     /// After the last tile.
     void finish();
 
@@ -35,14 +50,16 @@ class ShardOutput {
     Hash hash_;
 };
 
-class ShardInput {
+class TileInput {
   public:
     /// Reads the head.
-    explicit ShardInput(std::unique_ptr<ByteSource> source);
-    const ShardHead& head() const { return head_; }
+    TileInput(StreamKind kind, std::unique_ptr<ByteSource> source);
+    const StreamHead& head() const { return head_; }
     std::string name() const { return source_->name(); }
-    /// Fills `sums`, which were started for the next tile.
-    void read(TileSums& sums);
+    template <class T>
+    void read(std::vector<T>& numbers) {
+        read(numbers.data(), numbers.size() * sizeof(T));
+    }
     /// After the last tile: the hash must be right and nothing more may come.
     void finish();
 
@@ -51,10 +68,14 @@ class ShardInput {
     [[noreturn]] void refuse(const std::string& why) const;
     std::unique_ptr<ByteSource> source_;
     Hash hash_;
-    ShardHead head_;
+    StreamHead head_;
 };
 
+/// A tile of a shard; `sums` to be read were started for it.
+void write_sums(const TileSums& sums, TileOutput& out);
+void read_sums(TileInput& in, TileSums& sums);
+
 /// What two heads that cannot be parts of one frame differ in; empty if they can.
-std::string difference(const ShardHead& a, const ShardHead& b);
+std::string difference(const StreamHead& a, const StreamHead& b);
 
 }  // namespace pentaprism

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "resolve/filter.h"
+#include "resolve/sample_place.h"
 #include "shade/sample_order.h"
 
 namespace pentaprism {
@@ -61,21 +62,6 @@ struct FilteredPixel {
     }
 };
 
-// Offsets of a sample in its pixel, from the top left corner, times 256: exact.
-struct Offsets {
-    int x, y;
-};
-
-Offsets offsets(const SampleVector& vector, int lane) {
-    // Pixels lie at whole numbers from the middle of their cell.
-    return {static_cast<int>(vector.x[lane] * 256.0f) & 255, static_cast<int>(-vector.y[lane] * 256.0f) & 255};
-}
-
-std::size_t hit_index(int bx, int by, int slot, int lane, int slots) {
-    const int block = by % kCellBlocks * kCellBlocks + bx % kCellBlocks;
-    return (static_cast<std::size_t>(block) * slots + slot) * kLanes + lane;
-}
-
 }  // namespace
 
 void TileSums::start(const Tile& of, int ring, int channels) {
@@ -95,6 +81,19 @@ TileFilter::TileFilter(Filter filter, const glm::vec3& background)
         for (int i = 1 - reach_; i <= 1 + reach_; ++i)
             weights_[s][i] = static_cast<float>(filter_weight(filter, s / 256.0 - 0.5 - (i - 1)));
     }
+}
+
+void TileFilter::add_sample(const SubPixel& at, const glm::vec4& color, double weight, TileSums& sums) const {
+    const Float4 value = sample_of(glm::vec3(color), color.w);
+    const int px = at.x >> 8, py = at.y >> 8;
+    const Float4 &across = weights_[at.x & 255], &down = weights_[at.y & 255];
+    for (int j = -reach_; j <= reach_; ++j)
+        for (int i = -reach_; i <= reach_; ++i) {
+            const double share = weight * across[i + 1] * down[j + 1];
+            PixelSums& to = sums.at(px + i, py + j);
+            for (int c = 0; c < 4; ++c) to[c] += to_fixed(share * value[c]);
+            to[4] += to_fixed(share);
+        }
 }
 
 void TileFilter::add(const SampleTable& samples, const Hits& hits, const TileShade& shade, TileSums& sums) const {
@@ -117,10 +116,10 @@ void TileFilter::add(const SampleTable& samples, const Hits& hits, const TileSha
                 float depth = std::numeric_limits<float>::infinity();
                 for (int index = 0; index < samples.spp(); ++index) {
                     const int slot = order.slots(lane)[index];
-                    const std::size_t at = hit_index(bx, by, slot, lane, samples.slots());
+                    const std::size_t at = place_in_hits(bx, by, slot, lane, samples.slots());
                     const std::uint32_t point = shade.point_of_sample[at];
                     if (point != kBackground) depth = std::min(depth, hits.depth[at]);
-                    const auto [sx, sy] = offsets(vectors[slot], lane);
+                    const auto [sx, sy] = place_in_pixel(vectors[slot], lane);
                     pixel.add(shown[point == kBackground ? background : point], weights_[sx], weights_[sy]);
                     if ((index + 1) % kFloatRun == 0) pixel.flush();
                 }

@@ -48,6 +48,13 @@ class TileFilter {
     /// Adds the samples of the tile's pixels to `sums`, which were started for it. Thread-safe for different sums.
     void add(const SampleTable& samples, const Hits& hits, const TileShade& shade, TileSums& sums) const;
 
+    /// Adds one sample wherever it lies, as far as sums.reach - reach() from the tile. Unlike add() it rounds each by
+    /// itself, to 2^-32.
+    struct SubPixel {
+        int x, y;  ///< 1/256 pixel from the picture's top left corner
+    };
+    void add_sample(const SubPixel& at, const glm::vec4& color, double weight, TileSums& sums) const;
+
   private:
     int reach_;
     glm::vec3 background_;

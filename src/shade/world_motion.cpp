@@ -36,14 +36,16 @@ int segments_of(const Frame& frame, const Part& part, int most) {
 }
 
 Knots pose_knots(const Frame& frame, const Part& part, int segments, const Poses& poses) {
-    const std::size_t n = part.vertex_count, of_primitive = n - part.midpoints.size();
+    const std::size_t n = part.vertex_count, of_primitive = n - part.cut_points.size();
     Knots knots;
     const auto pose = [&](const Pose& at) {
         knots.emplace_back(n);
         std::vector<glm::dvec3>& points = knots.back();
         pose_positions(*frame.scene, at, part.placement, std::span(points).first(of_primitive));
-        for (std::size_t i = 0; i < part.midpoints.size(); ++i)
-            points[of_primitive + i] = 0.5 * (points[part.midpoints[i][0]] + points[part.midpoints[i][1]]);
+        for (std::size_t i = 0; i < part.cut_points.size(); ++i) {
+            const auto [a, b, share] = part.cut_points[i];
+            points[of_primitive + i] = points[a] + share * (points[b] - points[a]);
+        }
     };
     if (segments == 0) {
         pose(frame.middle);

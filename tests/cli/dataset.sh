@@ -50,6 +50,7 @@ frame = camera["frames"][0]
 assert frame["frame"] == 3 and frame["intrinsics"]["cx"] == 32
 assert abs(frame["exposure_s"] - 0.5 / 24) < 1e-12 or frame["exposure_s"] > 0
 assert frame["knots"][0]["time_s"] == frame["shutter_open_s"] and frame["knots"][-1]["time_s"] == frame["shutter_close_s"]
+assert all(knot["fx"] == frame["intrinsics"]["fx"] for knot in frame["knots"]), "nothing zooms"
 assert frame["knots"][0]["world_to_camera_column_major"] != frame["knots"][-1]["world_to_camera_column_major"]
 assert "blur/0004.png" in manifest["files"] and len(manifest["files"]["flow/0003.flo"]) == 32
 PY

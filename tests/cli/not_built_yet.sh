@@ -1,19 +1,13 @@
 #!/usr/bin/env bash
-# Every option and command of the contract is known by name; what is not built yet says so and does nothing.
+# Every command and option of the contract is known by name; a command that is not built yet says so.
 source "$(dirname "$0")/lib.bash"
 
 help_of() { "$PENTAPRISM" "$@" --help; }
 
-while read -r option value; do
-    refuses 2 "$option.* is not built yet \(planned: see CHANGELOG\)" render builtin:cubes -o a.exr "$option" $value
-done <<'END'
---samples dump
-END
 for command in view; do
     refuses 2 "$command is not built yet \(planned: see CHANGELOG\)" "$command" some thing --option
     check "$command is in the help" grep -q "^  $command .*not built yet" <(help_of)
 done
-check "no file was made" test ! -e a.exr
 
 # The names that users' scripts rely on.
 render_help=$(help_of render)

@@ -74,6 +74,20 @@ else
     echo "not tested: a disk that fills up (mounting is not allowed)"
 fi
 
+# Two processes at the same file: the second one is told, and the first one's work is not spoiled.
+"$PENTAPRISM" render builtin:cubes -o long.exr -r 4096x4096 -s 64 -q &
+process=$!
+for _ in $(seq 200); do
+    [[ -e long.exr.part ]] && break
+    sleep 0.05
+done
+refuses 4 'long.exr: cannot write \(another process is writing it\)' render builtin:cubes -o long.exr "${small[@]}" -q
+check "the .part of the first stays" test -e long.exr.part
+kill -9 "$process"
+wait "$process" 2>/dev/null
+succeeds render builtin:cubes -o long.exr "${small[@]}" -q
+check "when it is dead its .part is taken over" test -s long.exr -a ! -e long.exr.part
+
 # Files that are not ours, or broken.
 echo text >b.png
 refuses 2 'b.png: it is there and cannot be read' render builtin:cubes -o b.png "${small[@]}" --resume

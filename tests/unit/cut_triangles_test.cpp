@@ -93,6 +93,7 @@ TEST(CutTriangles, LieInTheWholeTriangleAndKnowWhere) {
 TEST(CutTriangles, ShareEveryInnerEdgeWithOneNeighbour) {
     const Scene scene = floor_scene(false);
     const Frame frame = floor_frame(scene);
+    EXPECT_GT(frame.triangle_count(), 20u);
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;  // +1 one way, -1 the other
     std::set<std::pair<std::uint32_t, std::uint32_t>> seen;
     for (std::uint32_t i = 0; i < frame.triangle_count(); ++i)
@@ -118,6 +119,45 @@ TEST(CutTriangles, ShareEveryInnerEdgeWithOneNeighbour) {
         }
         EXPECT_GE(sides, 1) << "a crack";
     }
+}
+
+TEST(CutTriangles, OfAFloorWithoutEndAreFew) {
+    // Also where the floor passes under the camera and lies askew.
+    for (const double turn : {0.0, 0.3, 0.785}) {
+        Scene scene = small_scene::scene_with_camera();
+        Primitive floor;
+        floor.positions = {{-1e5f, -1, 1e5f}, {1e5f, -1, 1e5f}, {1e5f, -1, -1e5f}, {-1e5f, -1, -1e5f}};
+        floor.indices = {0, 1, 2, 0, 2, 3};
+        const Index node = small_scene::add_mesh(scene, {floor});
+        scene.nodes[node].transform.rotation = glm::dquat(std::cos(turn / 2), 0, std::sin(turn / 2), 0);
+        const Frame frame = floor_frame(scene);
+        EXPECT_GT(frame.triangle_count(), 15u) << turn;
+        EXPECT_LT(frame.triangle_count(), 50u) << turn;
+    }
+}
+
+TEST(CutDepths, AreAsFineAsTheBlurBendsAndFinerForWhatMoves) {
+    const Scene scene = floor_scene(false);
+    const View view = floor_frame(scene).view;
+    const std::vector<double> still = cut_depths(std::span(&view, 1), 0.0),
+                              moving = cut_depths(std::span(&view, 1), 2.0);
+    EXPECT_LT(still.size(), 30u);
+    EXPECT_NEAR(still.back(), 10.0, 1e-9) << "where blur is real again";
+    const auto worst = [&](const std::vector<double>& depths, double shift) {
+        double most = 0.0;
+        for (std::size_t i = 0; i + 1 < depths.size(); ++i)
+            for (int k = 1; k < 32; ++k) {
+                const double p = depths[i] + shift, q = depths[i + 1] + shift, s = k / 32.0, z = p + s * (q - p);
+                const double c = view.coc(0, 0, p) + s * (view.coc(0, 0, q) - view.coc(0, 0, p));
+                if (p > view.depth_near) most = std::max(most, std::abs(c - view.coc(0, 0, z)) / z);
+            }
+        return most;
+    };
+    EXPECT_LT(worst(still, 0.0), 0.5);
+    EXPECT_GT(worst(still, 0.7), 0.5) << "what moves needs more";
+    for (const double shift : {-2.0, -0.7, 0.7, 1.9}) EXPECT_LT(worst(moving, shift), 0.5) << shift;
+    EXPECT_LT(moving.size(), 400u);
+    EXPECT_LT(cut_depths(std::span(&view, 1), 1e6).size(), 10'000u) << "however far it goes";
 }
 
 TEST(CutTriangles, LeaveARealLensAlone) {

@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# `--backend gl`: the processor's picture, and one line with exit code 5 where there is no driver.
+source "$(dirname "$0")/lib.bash"
+
+run render builtin:cubes -o probe.png -r 16x16 -s 1 --backend gl
+if [[ $status == 5 ]]; then
+    check "what is missing is said in one line" test "$(wc -l <err)" = 1
+    check "and how to get it" grep -q "^pentaprism: error: --backend gl: .*install" err
+    check "no file was made" test ! -e probe.png
+    [[ $failures == 0 ]] || finish
+    echo "no OpenGL here: $(cat err)"
+    exit 77
+fi
+check "a picture was made" test -s probe.png
+
+picture=(render builtin:hand -r 80x60 -s 5 --frame 24 --fstop 2.8 --aov depth,object-id)
+succeeds "${picture[@]}" -o cpu.exr
+succeeds "${picture[@]}" -o gl.exr --backend gl --stats gl.json
+check "the file is the processor's, byte for byte" cmp cpu.exr gl.exr
+check "the statistics name the device" json gl.json 'd["device"] and d["tested"] >= d["covered"] > 0'
+for threads in 1 4; do
+    succeeds "${picture[@]}" -o again.exr --backend gl --culling dual-space -t "$threads"
+    check "with $threads threads, too" cmp cpu.exr again.exr
+done
+
+succeeds bench builtin:cubes --backend gl -r 32x32 -s 2 --effects both --methods none,hyperplane --runs 1 --json
+check "bench rows are gl's and lose nothing" json out 'all(r["backend"] == "gl" and r["false_culls"] == 0 and 0 < r["ste"] <= 1 for r in d["rows"])'
+
+refuses 2 "--culling half-space: not with --backend gl, which has auto, .*none" render builtin:cubes -o a.png --backend gl --culling half-space
+refuses 2 "--culling bbox@bucket: not with --backend gl" render builtin:cubes -o a.png --backend gl --culling bbox@bucket
+refuses 2 "--backend gl: --visibility raytrace" render builtin:cubes -o a.png --backend gl --visibility raytrace
+__EGL_VENDOR_LIBRARY_FILENAMES=/dev/null refuses 5 "--backend gl: .*install" render builtin:cubes -o a.png --backend gl
+check "no file was made" test ! -e a.png
+finish

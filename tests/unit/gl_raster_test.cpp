@@ -1,0 +1,235 @@
+// The OpenGL backend sees what the processor sees: every sample of whole frames, triangle and depth bit for bit, and
+// the same counts.
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <pentaprism/error.h>
+#include <pentaprism/render.h>
+#include <pentaprism/settings.h>
+
+#include "gl/culling.h"
+#include "gl/device.h"
+#include "peer/posed_picture.h"
+#include "render/visibility.h"
+#include "support/isa.h"
+#include "support/scenes.h"
+
+namespace pentaprism {
+namespace {
+
+constexpr int kWidth = 96, kHeight = 72, kSpp = 6;  // six: the last pass is not full
+
+RenderSettings settings_of(int width = kWidth, int height = kHeight, int spp = kSpp) {
+    RenderSettings settings;
+    settings.image.width = width;
+    settings.image.height = height;
+    settings.image.spp = spp;
+    return settings;
+}
+
+struct Seen {
+    std::vector<std::uint32_t> triangle, depth;  // tile by tile, as in Hits; bits of the depth
+    CoverCounts counts;
+    CoverMap map;
+};
+
+Seen look(const PosedPicture& picture, Backend backend, const std::string& culling, int tile_size = kCellSize) {
+    MethodSettings method;
+    method.backend = backend;
+    method.culling = culling;
+    method.tile_size = tile_size;
+    const View& view = picture.frame.view;
+    const Visibility visibility(picture.frame, picture.samples, method, {0, view.width, 0, view.height});
+    Seen seen;
+    seen.map.width = view.width;
+    seen.map.height = view.height;
+    seen.map.tested.resize(static_cast<std::size_t>(view.width) * view.height);
+    seen.map.covered.resize(seen.map.tested.size());
+    Hits hits;
+    for (const Tile& tile : visibility.tiles()) {
+        visibility.cover(tile, hits, seen.counts, &seen.map);
+        seen.triangle.insert(seen.triangle.end(), hits.triangle.begin(), hits.triangle.end());
+        for (const float depth : hits.depth) seen.depth.push_back(std::bit_cast<std::uint32_t>(depth));
+    }
+    return seen;
+}
+
+std::int64_t differing(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
+    EXPECT_EQ(a.size(), b.size());
+    std::int64_t n = 0;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) n += a[i] != b[i];
+    return n;
+}
+
+class GlBackend : public testing::Test {
+  protected:
+    void SetUp() override {
+        try {
+            gl::Device::get();
+        } catch (const Error& error) {
+            GTEST_SKIP() << error.what();
+        }
+    }
+};
+
+// Counts are those of boxes in double, as one processor target makes them; the others' boxes in float are a little
+// wider.
+void expect_same(const Scene& scene, const RenderSettings& settings, double frame, const std::string& culling) {
+    const support::UseIsa scalar("scalar");
+    const PosedPicture picture = pose_picture(scene, settings, frame);
+    const Seen cpu = look(picture, Backend::kCpu, culling), gl = look(picture, Backend::kGl, culling);
+    EXPECT_GT(cpu.counts.covered, 0) << scene.name;
+    const std::int64_t triangles = differing(cpu.triangle, gl.triangle), depths = differing(cpu.depth, gl.depth);
+    const double per_million = 1e6 / static_cast<double>(cpu.triangle.size());
+    EXPECT_EQ(triangles, 0) << scene.name << ": " << static_cast<double>(triangles) * per_million << " per million";
+    EXPECT_EQ(depths, 0) << scene.name << ": " << static_cast<double>(depths) * per_million << " per million";
+    EXPECT_EQ(cpu.counts.tested, gl.counts.tested) << scene.name << ", " << culling;
+    EXPECT_EQ(cpu.counts.covered, gl.counts.covered) << scene.name << ", " << culling;
+    EXPECT_EQ(cpu.map.tested, gl.map.tested);
+    EXPECT_EQ(cpu.map.covered, gl.map.covered);
+}
+
+TEST_F(GlBackend, SeesTheSameTrianglesAtTheSameDepthsInBuiltinScenes) {
+    for (const char* name : {"builtin:cubes", "builtin:hand", "builtin:fairy-forest"}) {
+        RenderSettings settings = settings_of();
+        settings.camera.fstop = 2.8;
+        expect_same(load_scene(name), settings, 24, "none");
+    }
+}
+
+TEST_F(GlBackend, CountsAsTheProcessorWithEachCullingTest) {
+    const Scene scene = load_scene("builtin:hand");
+    RenderSettings settings = settings_of(64, 48, 4);
+    settings.camera.fstop = 2.8;
+    std::vector<std::string> choices = gl::culling_names();
+    choices.emplace_back("improved-dual-space@tile+hyperplane@pixel");
+    for (const std::string& culling : choices) expect_same(scene, settings, 24, culling);
+}
+
+TEST_F(GlBackend, SeesTheSameInFilesOfOthers) {
+    const char* folder = std::getenv("PENTAPRISM_SCENES");
+    if (folder == nullptr) GTEST_SKIP() << "PENTAPRISM_SCENES is not set";
+    // Cut-out leaves; the camera in the midst of things; blended surfaces; skins; no perspective.
+    for (const char* file :
+         {"forest/forest.glb", "race/race.glb", "insects/insects.glb", "hand/hand.glb", "environment/apartment.glb",
+          "khronos/Fox/Fox.glb", "khronos/AlphaBlendModeTest/AlphaBlendModeTest.glb"}) {
+        RenderSettings settings = settings_of();
+        settings.camera.fstop = 2.8;
+        expect_same(load_scene(std::string(folder) + "/" + file), settings, 12, "none");
+    }
+}
+
+TEST_F(GlBackend, TakesPatternsRollingShuttersCropsAndSmallTilesAsTheProcessorDoes) {
+    const Scene scene = load_scene("builtin:cubes");
+    RenderSettings settings = settings_of();
+    settings.shutter.rolling = RollingShutter::kTop;
+    expect_same(scene, settings, 24, "none");
+    settings.shutter.rolling = RollingShutter::kNone;
+    settings.method.visibility = VisibilityMethod::kAccumulation;
+    expect_same(scene, settings, 24, "none");
+
+    settings = settings_of();
+    settings.image.crop = {{33, 70, 5, 66}};
+    RenderStats stats;
+    const Picture cpu = render_picture(scene, settings, 24, stats);
+    for (const int tile_size : {8, 32}) {
+        settings.method.backend = Backend::kGl;
+        settings.method.tile_size = tile_size;
+        const Picture gl = render_picture(scene, settings, 24, stats);
+        EXPECT_EQ(cpu.rgba, gl.rgba);
+        EXPECT_EQ(cpu.z, gl.z);
+    }
+}
+
+TEST_F(GlBackend, SeesOrthographicPicturesAlike) {
+    Scene scene;
+    scene.name = "flat";
+    Camera camera;
+    camera.perspective = false;
+    support::add_camera(scene, "camera", {0, 0, 3}, camera);
+    const Index near = support::add_square(scene, "near", {-0.2, 0, 0.5}, 0.4f);
+    support::add_square(scene, "far", {0.2, 0.1, -0.5}, 0.6f);
+    support::animate(scene, near, ChannelPath::kTranslation, {0, 1}, {-0.2f, 0, 0.5f, 4, 0, -3});
+    expect_same(scene, settings_of(), 0, "improved-dual-space");
+}
+
+TEST_F(GlBackend, RefusesByNameWhatItCannotDo) {
+    const PosedPicture picture = pose_picture(load_scene("builtin:cubes"), settings_of(32, 32, 1), 0);
+    const auto refusal = [&](const std::string& culling) {
+        try {
+            look(picture, Backend::kGl, culling);
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::kUsage);
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_NE(refusal("half-space").find("--culling half-space: not with --backend gl"), std::string::npos);
+    EXPECT_NE(refusal("dual-space@bucket").find("--culling dual-space@bucket: not with"), std::string::npos);
+
+    RenderSettings settings = settings_of(32, 32, 1);
+    settings.method.backend = Backend::kGl;
+    settings.method.visibility = VisibilityMethod::kMicropolygon;
+    EXPECT_THROW(validate(settings), Error);
+
+    Scene glass;
+    glass.name = "glass";
+    support::add_camera(glass, "camera", {0, 0, 3});
+    support::add_square(glass, "pane", {0, 0, 0}, 1);
+    glass.materials.emplace_back();
+    glass.materials[0].name = "window";
+    glass.materials[0].transmission = 1.0f;
+    glass.meshes[0].primitives[0].material = 0;
+    settings.method.visibility = VisibilityMethod::kStochastic;
+    RenderStats stats;
+    try {
+        render_picture(glass, settings, 0, stats);
+        FAIL() << "glass was rendered";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::kBackend);
+        EXPECT_NE(std::string(error.what()).find("material 'window'"), std::string::npos) << error.what();
+    }
+}
+
+TEST_F(GlBackend, ShaderThatDoesNotCompileIsOneLine) {
+    const gl::Device::Current current(gl::Device::get());
+    const gl::ShaderSource bad[] = {{"bad", "#include \"base/number.glsl\"\nvoid main() { int x = 1.5f\n + y; }\n"}};
+    try {
+        gl::Program({{GL_COMPUTE_SHADER, "bad"}}, {}, bad);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::kBackend);
+        const std::string said = error.what();
+        EXPECT_EQ(said.find('\n'), std::string::npos);
+        EXPECT_NE(said.find("shader bad"), std::string::npos) << said;
+    }
+    gl::check("compiling");
+}
+
+std::int64_t resident_kilobytes() {
+    std::ifstream status("/proc/self/status");
+    for (std::string word; status >> word;) {
+        std::int64_t value = 0;
+        if (word == "VmRSS:" && status >> value) return value;
+    }
+    return 0;
+}
+
+TEST_F(GlBackend, LeavesNoErrorAndNoMemoryBehindAfterAHundredFrames) {
+    const PosedPicture picture = pose_picture(load_scene("builtin:cubes"), settings_of(64, 64, 2), 24);
+    std::int64_t after_warm_up = 0;
+    for (int frame = 0; frame < 100; ++frame) {
+        look(picture, Backend::kGl, "none");
+        if (frame == 19) after_warm_up = resident_kilobytes();
+    }
+    const gl::Device::Current current(gl::Device::get());
+    EXPECT_NO_THROW(gl::check("rendering a hundred frames"));
+    // A frame holds 1.5 MB on the device: eighty that stay would be 120 MB.
+    EXPECT_LT(resident_kilobytes() - after_warm_up, 8 * 1024);
+}
+
+}  // namespace
+}  // namespace pentaprism

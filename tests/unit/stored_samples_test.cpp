@@ -1,0 +1,288 @@
+// Pictures of stored samples against what is known of them, and against direct renders.
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <pentaprism/error.h>
+#include <pentaprism/stored_samples.h>
+
+#include "unit/small_scene.h"
+
+namespace pentaprism {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+constexpr int kSize = 64;
+constexpr double kFocal = kSize / 2;  // pixels
+
+struct MemorySink : ByteSink {
+    Bytes bytes;
+    void write(std::span<const std::byte> more) override { bytes.insert(bytes.end(), more.begin(), more.end()); }
+};
+
+struct MemorySource : ByteSource {
+    explicit MemorySource(const Bytes& all) : bytes(all) {}
+    std::string name() const override { return "memory"; }
+    bool at_end() override { return at == bytes.size(); }
+    void read(std::span<std::byte> out) override {
+        if (out.size() > bytes.size() - at) throw Error(ErrorKind::kScene, "too short");
+        std::copy_n(bytes.begin() + at, out.size(), out.begin());
+        at += out.size();
+    }
+    const Bytes& bytes;
+    std::size_t at = 0;
+};
+
+struct Rows : RowSink {
+    std::vector<float> rgba, z;
+    FrameInfo info;
+    void begin(const FrameInfo& of) override { info = of; }
+    void rows(const PixelRows& band) override {
+        rgba.insert(rgba.end(), band.rgba.begin(), band.rgba.end());
+        z.insert(z.end(), band.z.begin(), band.z.end());
+    }
+    float red(int x, int y) const { return rgba[4 * (static_cast<std::size_t>(y) * kSize + x)]; }
+};
+
+// A small white square 2 metres away that moves right by 2 metres a second, before a large grey one at 8 metres whose
+// right half is white. Nothing needs light.
+Scene scene_of_two() {
+    Scene scene = small_scene::scene_with_camera();
+    scene.materials.resize(2);
+    scene.materials[0].unlit = scene.materials[1].unlit = true;
+    scene.materials[0].double_sided = scene.materials[1].double_sided = true;
+    scene.materials[1].base_color = {0.25f, 0.25f, 0.25f, 1.0f};
+    const Index mover = small_scene::add_mesh(scene, {small_scene::square(0.25f, 0.0f, 0)});
+    Primitive half = small_scene::square(10.0f, -8.0f, 0);
+    for (glm::vec3& p : half.positions) p.x = p.x > 0.0f ? p.x : 0.0f;
+    small_scene::add_mesh(scene, {half});
+    small_scene::add_mesh(scene, {small_scene::square(20.0f, -8.5f, 1)});
+    Channel channel;
+    channel.node = mover;
+    channel.path = ChannelPath::kTranslation;
+    channel.times = {0.0f, 1.0f};
+    channel.values = {-1.0f, 1.0f, -2.0f, 1.0f, 1.0f, -2.0f};
+    scene.animations.push_back({"move", {channel}, 1.0});
+    return scene;
+}
+
+RenderSettings settings_focused_at(double distance, int spp = 16, std::uint32_t seed = 0) {
+    RenderSettings settings;
+    settings.image.width = settings.image.height = kSize;
+    settings.image.spp = spp;
+    settings.image.filter = Filter::kBox;
+    settings.animation.fps = 10.0;
+    settings.camera.lens_radius = 0.3;
+    settings.camera.focus_distance = distance;
+    settings.method.seed = seed;
+    return settings;
+}
+
+constexpr double kFrame = 5.0;  // the mover is in the middle
+
+Bytes samples_of(const RenderSettings& settings) {
+    const Scene scene = scene_of_two();
+    MemorySink sink;
+    RenderStats stats;
+    Renderer(scene).render_samples(settings, kFrame, {}, sink, stats);
+    return sink.bytes;
+}
+
+Rows developed(const Bytes& bytes, const Development& development) {
+    StoredSamples samples(std::make_unique<MemorySource>(bytes));
+    Rows rows;
+    samples.develop(development, rows);
+    return rows;
+}
+
+Rows rendered(const RenderSettings& settings) {
+    const Scene scene = scene_of_two();
+    Rows rows;
+    RenderStats stats;
+    render_frame(scene, settings, kFrame, rows, stats);
+    return rows;
+}
+
+double rmse(const Rows& a, const Rows& b, int border = 0) {
+    double sum = 0.0;
+    int count = 0;
+    for (int y = border; y < kSize - border; ++y)
+        for (int x = border; x < kSize - border; ++x, ++count) {
+            const double off = double(a.red(x, y)) - b.red(x, y);
+            sum += off * off;
+        }
+    return std::sqrt(sum / count);
+}
+
+// Mean of a - b, and its standard error if pixels are independent.
+std::pair<double, double> mean_difference(const Rows& a, const Rows& b, int border) {
+    double sum = 0.0, squares = 0.0;
+    int count = 0;
+    for (int y = border; y < kSize - border; ++y)
+        for (int x = border; x < kSize - border; ++x, ++count) {
+            const double off = double(a.red(x, y)) - b.red(x, y);
+            sum += off, squares += off * off;
+        }
+    return {sum / count, std::sqrt(squares) / count};
+}
+
+TEST(StoredSamples, AsTheyWereTheyAreThePicture) {
+    for (const Filter filter : {Filter::kBox, Filter::kTent, Filter::kBlackmanHarris}) {
+        RenderSettings settings = settings_focused_at(4.0, 8);
+        settings.image.filter = filter;
+        settings.image.exposure = 0.7;
+        settings.shutter.rolling = RollingShutter::kTop;
+        settings.shutter.curve = trapezoid_shutter(0.2, 0.6);
+        const Rows direct = rendered(settings), again = developed(samples_of(settings), {});
+        ASSERT_EQ(direct.rgba.size(), again.rgba.size());
+        for (std::size_t i = 0; i < direct.rgba.size(); ++i) ASSERT_NEAR(direct.rgba[i], again.rgba[i], 2e-6) << i;
+        EXPECT_EQ(direct.z, again.z);
+        EXPECT_EQ(direct.info.world_to_ndc, again.info.world_to_ndc);
+    }
+}
+
+TEST(StoredSamples, ACropHoldsItsRim) {
+    RenderSettings settings = settings_focused_at(4.0, 4);
+    settings.image.filter = Filter::kBlackmanHarris;
+    settings.image.crop = {17, 51, 9, 40};
+    const Rows direct = rendered(settings), again = developed(samples_of(settings), {});
+    ASSERT_EQ(direct.rgba.size(), again.rgba.size());
+    for (std::size_t i = 0; i < direct.rgba.size(); ++i) ASSERT_NEAR(direct.rgba[i], again.rgba[i], 2e-6) << i;
+}
+
+TEST(StoredSamples, FocusedOnAnEdgeItIsSharp) {
+    // The edge at 8 metres is at x = 32; its circle of confusion was 32 * 0.3 * (1/2 - 1/8) = 3.6 pixels.
+    const Bytes bytes = samples_of(settings_focused_at(2.0));
+    const Rows before = developed(bytes, {});
+    EXPECT_GT(before.red(30, 60), 0.3f);
+    Development at_edge;
+    at_edge.focus_distance = 8.0;
+    const Rows sharp = developed(bytes, at_edge);
+    for (int y = 52; y < 58; ++y) {
+        for (int x = 20; x < 31; ++x) EXPECT_NEAR(sharp.red(x, y), 0.25f, 1e-3f) << x << ' ' << y;
+        for (int x = 33; x < 44; ++x) EXPECT_NEAR(sharp.red(x, y), 1.0f, 1e-3f) << x << ' ' << y;
+    }
+    EXPECT_EQ(sharp.info.focus_distance, 8.0);
+}
+
+TEST(StoredSamples, RefocusedItIsADirectRenderButForNoise) {
+    const int border = 8;
+    Development wanted;
+    wanted.focus_distance = 3.0;
+    const Rows again = developed(samples_of(settings_focused_at(6.0, 64)), wanted);
+    const Rows direct = rendered(settings_focused_at(3.0, 64, 1)), other = rendered(settings_focused_at(3.0, 64, 2));
+    const auto [difference, error] = mean_difference(again, direct, border);
+    EXPECT_LT(std::abs(difference), 5.0 * error);
+    EXPECT_LT(rmse(again, direct, border), 2.0 * rmse(other, direct, border));
+    EXPECT_GT(rmse(rendered(settings_focused_at(6.0, 64)), direct, border), 3.0 * rmse(again, direct, border));
+}
+
+TEST(StoredSamples, ASmallerApertureIsADirectRenderButForNoise) {
+    RenderSettings wide = settings_focused_at(4.0, 64), narrow = settings_focused_at(4.0, 64, 1);
+    wide.camera.lens_radius.reset();
+    narrow.camera.lens_radius.reset();
+    wide.camera.fstop = 0.04;
+    narrow.camera.fstop = 0.08;
+    Development wanted;
+    wanted.fstop = 0.08;
+    const Rows again = developed(samples_of(wide), wanted), direct = rendered(narrow);
+    narrow.method.seed = 2;
+    const auto [difference, error] = mean_difference(again, direct, 0);
+    EXPECT_LT(std::abs(difference), 5.0 * error);
+    // A quarter of the samples is left: twice the noise.
+    EXPECT_LT(rmse(again, direct), 4.0 * rmse(rendered(narrow), direct));
+    EXPECT_GT(rmse(rendered(wide), direct), 1.5 * rmse(again, direct));
+}
+
+TEST(StoredSamples, RetimedItShowsTheOtherTimesAlone) {
+    // Focused on the mover, which goes 3.2 pixels in a tenth of a second, open half of it: 1.6 pixels.
+    RenderSettings settings = settings_focused_at(2.0, 64);
+    settings.shutter.shutter = 2.0;  // 6.4 pixels
+    const Bytes bytes = samples_of(settings);
+    Development early;
+    early.shutter = 0.25;
+    early.shutter_offset = -0.875;  // the first eighth
+    const Rows rows = developed(bytes, early);
+    const double start = kSize / 2.0 - 3.2, way = 0.8, half = 4.0;
+    const int y = kSize / 2 - 16;  // one metre up at two metres
+    for (int x = 16; x < 48; ++x) {
+        const double first = start - half, last = start + half;
+        if (x + 1 < first) {
+            EXPECT_NEAR(rows.red(x, y), 0.25f, 1e-5f) << x << ": never the mover";
+        } else if (x > first + way && x + 1 < last) {
+            EXPECT_NEAR(rows.red(x, y), 1.0f, 1e-5f) << x << ": always the mover";
+        }
+    }
+    settings.shutter.shutter = 0.25;
+    settings.method.seed = 1;
+    RenderSettings shifted = settings;
+    const Scene scene = scene_of_two();
+    Rows direct, other;
+    RenderStats stats;
+    render_frame(scene, shifted, kFrame - 0.875, direct, stats);
+    shifted.method.seed = 2;
+    render_frame(scene, shifted, kFrame - 0.875, other, stats);
+    const auto [difference, error] = mean_difference(rows, direct, 0);
+    EXPECT_LT(std::abs(difference), 5.0 * error);
+    EXPECT_LT(rmse(rows, direct), 5.0 * rmse(other, direct)) << "an eighth of the samples: 2.8 times the noise";
+    EXPECT_NEAR(rows.info.shutter_open, direct.info.shutter_open, 1e-12);
+    EXPECT_NEAR(rows.info.shutter_close, direct.info.shutter_close, 1e-12);
+}
+
+TEST(StoredSamples, AGlobalShutterBecomesARollingOneOrOneWithACurve) {
+    RenderSettings settings = settings_focused_at(2.0, 64);
+    settings.shutter.shutter = 2.0;
+    const Bytes bytes = samples_of(settings);
+    Development wanted;
+    wanted.shutter = 0.5;
+    wanted.curve = trapezoid_shutter(0.4, 0.6);
+    wanted.rolling = RollingShutter::kBottom;
+    wanted.rolling_duration = 1.5;
+    const Rows again = developed(bytes, wanted);
+    settings.shutter.shutter = 0.5;
+    settings.shutter.curve = wanted.curve;
+    settings.shutter.rolling = wanted.rolling;
+    settings.shutter.rolling_duration = wanted.rolling_duration;
+    settings.method.seed = 1;
+    const Rows direct = rendered(settings);
+    settings.method.seed = 2;
+    const Rows other = rendered(settings);
+    const auto [difference, error] = mean_difference(again, direct, 0);
+    EXPECT_LT(std::abs(difference), 5.0 * error);
+    EXPECT_LT(rmse(again, direct), 4.0 * rmse(other, direct));
+    settings.shutter.rolling = RollingShutter::kTop;
+    EXPECT_GT(rmse(rendered(settings), direct), 2.0 * rmse(again, direct)) << "the direction matters";
+    EXPECT_NEAR(again.info.readout, direct.info.readout, 1e-12);
+    EXPECT_NEAR(again.info.shutter_open, direct.info.shutter_open, 1e-12);
+}
+
+TEST(StoredSamples, RefuseWhatTheyDoNotHold) {
+    const Bytes bytes = samples_of(settings_focused_at(4.0, 1));
+    const auto refused = [](const Bytes& samples, auto change) {
+        Development wanted;
+        change(wanted);
+        EXPECT_THROW(developed(samples, wanted), Error);
+    };
+    refused(bytes, [](Development& d) { d.fstop = 0.001; });
+    refused(bytes, [](Development& d) { d.focus_distance = 0.0; });
+    refused(bytes, [](Development& d) { d.focus_distance = -1.0; });
+    refused(bytes, [](Development& d) { d.focus_distance = 0.03; });  // over 256 pixels
+    refused(bytes, [](Development& d) { d.shutter = 0.6; });
+    refused(bytes, [](Development& d) { d.shutter = 0.0; });
+    refused(bytes, [](Development& d) { d.shutter = std::nan(""); });
+    refused(bytes, [](Development& d) { d.shutter_offset = 0.01; });
+    refused(bytes, [](Development& d) { d.rolling = RollingShutter::kTop, d.rolling_duration = 0.5; });
+    refused(bytes, [](Development& d) { d.curve = {{0.5, 1.0}, {0.2, 1.0}}; });
+    RenderSettings settings = settings_focused_at(4.0, 1);
+    settings.shutter.curve = trapezoid_shutter(0.2, 0.6);
+    refused(samples_of(settings), [](Development& d) { d.shutter = 0.2; });
+    settings.camera.defocus = false;
+    refused(samples_of(settings), [](Development& d) { d.focus_distance = 3.0; });
+    Bytes damaged = bytes;
+    damaged[damaged.size() / 2] ^= std::byte{0x40};
+    refused(damaged, [](Development&) {});
+    damaged.resize(damaged.size() / 2);
+    refused(damaged, [](Development&) {});
+}
+
+}  // namespace
+}  // namespace pentaprism
