@@ -137,7 +137,7 @@ const float* ShadowMap::depths(int exponent, int limit, int cx, int cy) const {
 const float* ShadowMap::render(int exponent, int cx, int cy, const List& list) const {
     if (list.empty()) return kEmptyCell.data();
     static thread_local AlignedVector<float> depths(ShadowSamples::kPerCell);
-    draw_({casters(), list, samples(cx, cy), cx, cy, width_, std::ldexp(1.0f, -exponent)}, depths.data());
+    draw_({casters(), list, samples_, cx, cy, width_, std::ldexp(1.0f, -exponent)}, depths.data());
     if (std::all_of(depths.begin(), depths.end(), [](float depth) { return depth == INFINITY; }))
         return kEmptyCell.data();
     float* made = new float[depths.size()];

@@ -10,9 +10,10 @@
 #include <algorithm>
 #include <cmath>
 #include <hwy/highway.h>
+#include <optional>
 
 #include "base/cpu.h"
-#include "frame/opacity.h"
+#include "cover/vector_opacity-inl.h"
 #include "sample/net.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -20,11 +21,6 @@ namespace pentaprism {
 namespace HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using F = hn::CappedTag<float, 16>;
-using Vec = hn::Vec<F>;
-using Mask = hn::Mask<F>;
-constexpr int kWidth = static_cast<int>(hn::MaxLanes(F()));
 constexpr int kSamples = ShadowSamples::kSamples;
 
 HWY_INLINE Vec product_difference(Vec a, Vec b, Vec c, Vec d) {
@@ -33,8 +29,8 @@ HWY_INLINE Vec product_difference(Vec a, Vec b, Vec c, Vec d) {
 
 // One motion segment of a triangle, x and y in texels and sheared to the cell's middle. [corner]
 struct Sheared {
-    float x[3], y[3], w[3], z[3];
-    float dx[3], dy[3], dw[3], dz[3];
+    float x[3], y[3], z[3];
+    float dx[3], dy[3], dz[3];
     float segments, segment, nearest;
     std::uint32_t triangle;
     bool moves, mixed;  // mixed: its opacity is to be asked
@@ -57,49 +53,43 @@ Sheared shear(const ShadowCellWork& work, const Casters::Box& box) {
     for (int k = 0; k < 3; ++k) {
         const std::size_t at =
             frame.corners[3 * std::size_t{box.triangle} + k] + std::size_t{box.segment} * part.vertex_count;
-        const auto place = [&](std::size_t i, float& x, float& y, float& w, float& z) {
+        const auto place = [&](std::size_t i, float& x, float& y, float& z) {
             const glm::vec4& p = frame.points[i];
             x = p.x * work.scale - centre_x * p.z;
             y = p.y * work.scale - centre_y * p.z;
-            w = p.z;
             z = perspective ? p.z : frame.depths[i];
         };
-        place(at, T.x[k], T.y[k], T.w[k], T.z[k]);
+        place(at, T.x[k], T.y[k], T.z[k]);
         if (!T.moves) continue;
-        place(at + part.vertex_count, T.dx[k], T.dy[k], T.dw[k], T.dz[k]);
-        T.dx[k] -= T.x[k], T.dy[k] -= T.y[k], T.dw[k] -= T.w[k], T.dz[k] -= T.z[k];
+        place(at + part.vertex_count, T.dx[k], T.dy[k], T.dz[k]);
+        T.dx[k] -= T.x[k], T.dy[k] -= T.y[k], T.dz[k] -= T.z[k];
     }
     return T;
 }
 
-// Which of the lanes are opaque there.
-Mask ask_opacity(const ShadowCellWork& work, const Sheared& T, int first, const Vec e[3], Vec sum, Mask asked) {
-    const F f;
-    HWY_ALIGN float b[3][kWidth];
-    for (int k = 0; k < 3; ++k) hn::Store(hn::Div(e[k], sum), f, b[k]);
-    HWY_ALIGN float opaque[kWidth] = {};
-    HWY_ALIGN float wanted[kWidth];
-    hn::Store(hn::IfThenElseZero(asked, hn::Set(f, 1.0f)), f, wanted);
-    for (int lane = 0; lane < kWidth; ++lane) {
-        if (wanted[lane] == 0.0f) continue;
+// Those of the hits that are opaque, as the camera's coverage stage decides it. `terms`: of the triangle, when asked.
+Mask opaque(const ShadowCellWork& work, std::uint32_t triangle, std::optional<OpacityTerms>& terms, int first,
+            const Vec e[3], Vec sum, Mask hit) {
+    const Frame& frame = work.casters.frame;
+    if (!terms) terms = opacity_terms(frame, triangle);
+    const TileWork tile_work{frame, work.samples.table(), {}, {}, Tile{}};
+    return decide_opacity(F(), tile_work, triangle, *terms, e, sum, hit, [&](int lane) {
         const int index = first + lane, texel = index / kSamples;
-        const float barycentrics[3] = {b[0][lane], b[1][lane], b[2][lane]};
-        const int px = work.cx * kCellSize + texel % kCellSize, py = work.cy * kCellSize + texel / kCellSize;
-        if (is_opaque_at(work.casters.frame, T.triangle, barycentrics, px, py, index % kSamples, kSamples))
-            opaque[lane] = 1.0f;
-    }
-    return hn::Gt(hn::Load(f, opaque), hn::Zero(f));
+        return SampleOfPixel{work.cx * kCellSize + texel % kCellSize, work.cy * kCellSize + texel / kCellSize,
+                             index % kSamples};
+    });
 }
 
 template <bool kMoves, bool kPerspective>
-HWY_INLINE void test(const ShadowCellWork& work, const Sheared& T, int first, float* depths) {
+HWY_INLINE void test(const ShadowCellWork& work, const ShadowSamples::Cell& samples, const Sheared& T,
+                     std::optional<OpacityTerms>& terms, int first, float* depths) {
     const F f;
     const Vec stored = hn::Load(f, depths + first);
     if (hn::AllTrue(f, hn::Le(stored, hn::Set(f, T.nearest)))) return;
-    const Vec hx = hn::Load(f, work.samples.x + first), hy = hn::Load(f, work.samples.y + first);
+    const Vec hx = hn::Load(f, samples.x + first), hy = hn::Load(f, samples.y + first);
     Vec s = hn::Zero(f);
     if constexpr (kMoves)
-        s = hn::Sub(hn::Mul(hn::Load(f, work.samples.t + first), hn::Set(f, T.segments)), hn::Set(f, T.segment));
+        s = hn::Sub(hn::Mul(hn::Load(f, samples.t + first), hn::Set(f, T.segments)), hn::Set(f, T.segment));
     const auto at = [&](float q, const float* change, int k) HWY_ATTR {
         if constexpr (kMoves) return hn::Add(hn::Set(f, q), hn::Mul(s, hn::Set(f, change[k])));
         (void)change, (void)k;
@@ -128,7 +118,7 @@ HWY_INLINE void test(const ShadowCellWork& work, const Sheared& T, int first, fl
     if constexpr (kMoves)
         if (T.segments > 1.0f) hit = hn::And(hit, hn::And(hn::Ge(s, zero), hn::Lt(s, hn::Set(f, 1.0f))));
     if (hn::AllFalse(f, hit)) return;
-    if (T.mixed) hit = hn::And(hit, ask_opacity(work, T, first, e, sum, hit));
+    if (T.mixed) hit = opaque(work, T.triangle, terms, first, e, sum, hit);
     hn::Store(hn::IfThenElse(hit, depth, stored), f, depths + first);
 }
 
@@ -152,10 +142,12 @@ Rect rect_of(const ShadowCellWork& work, const Casters::Box& box) {
 
 template <bool kMoves, bool kPerspective>
 void draw_triangle(const ShadowCellWork& work, const Sheared& T, const Rect& rect, float* depths) {
+    const ShadowSamples::Cell& samples = work.samples.cell(work.cx, work.cy);
+    std::optional<OpacityTerms> terms;
     for (int row = rect.y0; row <= rect.y1; ++row) {
         const int begin = (row * kCellSize + rect.x0) * kSamples, end = (row * kCellSize + rect.x1 + 1) * kSamples;
         for (int first = begin / kWidth * kWidth; first < end; first += kWidth)
-            test<kMoves, kPerspective>(work, T, first, depths);
+            test<kMoves, kPerspective>(work, samples, T, terms, first, depths);
     }
 }
 
@@ -185,13 +177,15 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace pentaprism {
 
-ShadowSamples::ShadowSamples(std::uint32_t seed) : seed_(seed), cells_(std::make_unique<Cell[]>(kPeriod * kPeriod)) {
-    const SampleTable table(kSamples, seed, Lens{}, Grouping::kMotion);
+ShadowSamples::ShadowSamples(std::uint32_t seed)
+    : seed_(seed),
+      table_(kSamples, seed, Lens{}, Grouping::kMotion),
+      cells_(std::make_unique<Cell[]>(kPeriod * kPeriod)) {
     std::vector<SampleVector> room;
     for (int cy = 0; cy < kPeriod; ++cy)
         for (int cx = 0; cx < kPeriod; ++cx) {
             Cell& cell = cells_[index_of(cx, cy)];
-            const std::span<const SampleVector> vectors = table.cell(cx, cy, room);
+            const std::span<const SampleVector> vectors = table_.cell(cx, cy, room);
             for (int i = 0; i < kPerCell; ++i) {
                 const int texel = i / kSamples, column = texel % kCellSize, row = texel / kCellSize;
                 const int block = row / kBlockSize * kCellBlocks + column / kBlockSize;

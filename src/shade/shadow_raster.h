@@ -25,12 +25,14 @@ class ShadowSamples {
     };
     explicit ShadowSamples(std::uint32_t seed);
     const Cell& cell(int cx, int cy) const { return cells_[index_of(cx, cy)]; }
+    const SampleTable& table() const { return table_; }
 
   private:
     std::size_t index_of(int cx, int cy) const;
 
     static constexpr int kPeriod = 4;  // cells, both ways
     std::uint32_t seed_;
+    SampleTable table_;
     std::unique_ptr<Cell[]> cells_;
 };
 
@@ -38,7 +40,7 @@ class ShadowSamples {
 struct ShadowCellWork {
     const Casters& casters;
     std::span<const std::uint32_t> list;  ///< into Casters::boxes, in any order
-    const ShadowSamples::Cell& samples;
+    const ShadowSamples& samples;
     int cx, cy, width;  ///< the cell, and how many texels the level spans
     float scale;        ///< texels a unit of the casters' x and y; a power of two
 };

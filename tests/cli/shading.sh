@@ -20,6 +20,11 @@ for rate in pixel sample decoupled; do
     check "$rate: the processor does not change a bit" same one.exr scalar.exr
 done
 succeeds render "${small[@]}" -o plain.exr
+succeeds render "${small[@]}" -o cells.exr --shading decoupled
+check "cells by default" same plain.exr cells.exr
+succeeds render "${small[@]}" -o still-cells.exr --no-motion-blur --no-defocus
+succeeds render "${small[@]}" -o still-pixels.exr --no-motion-blur --no-defocus --shading pixel
+check "a still frame's cells are its pixels" same still-cells.exr still-pixels.exr
 succeeds render "${small[@]}" -o moving.exr --shadows moving
 check "shadows move by default" same plain.exr moving.exr
 succeeds render "${small[@]}" -o off.exr --shadows off

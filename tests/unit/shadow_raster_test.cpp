@@ -74,7 +74,7 @@ TEST(ShadowRaster, ACellHoldsWhatTheExactTestSeesOnEveryCpuTarget) {
             for (std::uint32_t i = 0; i < list.size(); ++i) list[i] = i;
             for (int cell = 0; cell < 4; ++cell) {
                 const int cx = cell % 2, cy = cell / 2;
-                const ShadowCellWork work{casters, list, samples.cell(cx, cy), cx, cy, kWidth, kScale};
+                const ShadowCellWork work{casters, list, samples, cx, cy, kWidth, kScale};
                 AlignedVector<float> depths(ShadowSamples::kPerCell), others(ShadowSamples::kPerCell);
                 draw_shadow_cell()(work, depths.data());
                 for (const char* isa : {"scalar", "avx2", "avx512"}) {

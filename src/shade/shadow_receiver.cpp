@@ -1,0 +1,33 @@
+#include "shade/shadow_receiver.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+
+namespace pentaprism {
+
+// In double as the casters are (casters.cpp): a surface that casts and receives is the same.
+void ShadowReceiver::start(const WorldMotion& world, std::uint32_t triangle, const ShadowMap& map) {
+    const Part& part = world.parts[world.part_of[triangle]];
+    map_ = &map;
+    key_ = -1;
+    segments_ = part.moves ? part.segments : 1;
+    path_ = !part.moves ? Path::kStill : segments_ == 1 ? Path::kStraight : Path::kInPieces;
+    const LightView& view = map.view();
+    knots_.clear();
+    for (int knot = 0; knot < (part.moves ? segments_ + 1 : 1); ++knot)
+        for (int k = 0; k < 3; ++k) {
+            const std::uint32_t at = world.corners[3 * std::size_t{triangle} + k] + knot * part.vertex_count;
+            const glm::dvec3 p = glm::dvec3(world.points[at]) - view.position;
+            for (int axis = 0; axis < 3; ++axis) knots_.push_back(static_cast<float>(glm::dot(p, view.axes[axis])));
+        }
+    if (!part.moves) return;
+    for (int border = 0; border <= ShadowMap::kSamples; ++border) {
+        const float along = static_cast<float>(border * segments_) / ShadowMap::kSamples;
+        const int segment = std::min(static_cast<int>(along), segments_ - 1);
+        const float s = along - static_cast<float>(segment);
+        const float *now = &knots_[9 * segment], *next = now + 9;
+        for (int i = 0; i < 9; ++i) borders_[9 * border + i] = now[i] + s * (next[i] - now[i]);
+    }
+}
+
+}  // namespace pentaprism
