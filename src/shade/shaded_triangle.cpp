@@ -145,18 +145,29 @@ glm::vec3 inside(const glm::dvec3& over_w) {
 
 }  // namespace
 
+// A piece of a cut triangle (frame/cut_triangles.h) may be a long, thin strip, in which the way back from the middle of
+// a cell can be long; a place beside it is as good while it is on the triangle that was cut.
+glm::vec3 ShadedTriangle::on_surface(const glm::dvec3& over_w) const {
+    const double sum = over_w.x + over_w.y + over_w.z;
+    if (!scene_.frame().pieces.empty() && sum > 0.0) {
+        const glm::vec3 b((1.0 / sum) * over_w), source = scene_.frame().in_source(triangle_, b);
+        if (source.x >= 0.0f && source.y >= 0.0f && source.z >= 0.0f) return b;
+    }
+    return inside(over_w);
+}
+
 glm::vec3 ShadedTriangle::barycentrics_at(const glm::dvec2& place) const {
-    return inside(projection_.by_x * place.x + projection_.by_y * place.y + projection_.by_1);
+    return on_surface(projection_.by_x * place.x + projection_.by_y * place.y + projection_.by_1);
 }
 
 void ShadedTriangle::barycentrics_of_quarters(const ShadingCell& cell, glm::vec3 out[4]) const {
     const auto change = [&](const glm::dvec2& way) { return projection_.by_x * way.x + projection_.by_y * way.y; };
     const glm::dvec3 middle = change(cell.centre) + projection_.by_1;
     const glm::dvec3 along = change(0.25 * glm::dvec2(cell.along)), across = change(0.25 * glm::dvec2(cell.across));
-    out[0] = inside(middle - along - across);
-    out[1] = inside(middle + along - across);
-    out[2] = inside(middle - along + across);
-    out[3] = inside(middle + along + across);
+    out[0] = on_surface(middle - along - across);
+    out[1] = on_surface(middle + along - across);
+    out[2] = on_surface(middle - along + across);
+    out[3] = on_surface(middle + along + across);
 }
 
 // How far the smooth surface bulges out over the facet, along the smooth normal: a parabola over each edge that follows

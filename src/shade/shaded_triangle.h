@@ -48,6 +48,8 @@ class ShadedTriangle {
     void barycentrics_of_quarters(const ShadingCell& cell, glm::vec3 out[4]) const;
 
   private:
+    /// From barycentrics over w, up to a factor: those of a place on the surface, with sum 1.
+    glm::vec3 on_surface(const glm::dvec3& over_w) const;
     /// The triangle on the screen: pixels, at mid-shutter and through the middle of the lens.
     struct Projection {
         glm::dvec3 corner[3];         // x, y, w
