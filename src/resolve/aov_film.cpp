@@ -71,6 +71,7 @@ void AovFilm::add(const TileSums& from, int y0, int y1) {
 }
 
 std::span<const float> AovFilm::rows(int first, int count) {
+    if (channels_ == 0) return {};
     const std::size_t n = static_cast<std::size_t>(count) * width_;
     delivered_.resize(n * channels_);
     std::size_t i = 0;

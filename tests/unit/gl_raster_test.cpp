@@ -227,8 +227,10 @@ TEST_F(GlBackend, LeavesNoErrorAndNoMemoryBehindAfterAHundredFrames) {
     }
     const gl::Device::Current current(gl::Device::get());
     EXPECT_NO_THROW(gl::check("rendering a hundred frames"));
+#ifndef __SANITIZE_ADDRESS__  // which keeps what is freed for a while, and finds leaks itself
     // A frame holds 1.5 MB on the device: eighty that stay would be 120 MB.
     EXPECT_LT(resident_kilobytes() - after_warm_up, 8 * 1024);
+#endif
 }
 
 }  // namespace
