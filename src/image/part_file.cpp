@@ -92,7 +92,7 @@ void PartFile::throw_if_failed() const {
 }
 
 void PartFile::write(const void* bytes, std::size_t count) {
-    if (std::fwrite(bytes, 1, count, stream_.get()) != count) fail(errno);
+    if (count != 0 && std::fwrite(bytes, 1, count, stream_.get()) != count) fail(errno);
 }
 
 std::uint64_t PartFile::position() {
