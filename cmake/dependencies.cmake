@@ -29,7 +29,7 @@ set(PENTAPRISM_HAVE_MPI OFF)
 if(PENTAPRISM_MPI)
   set(MPI_CXX_SKIP_MPICXX ON)  # C's interface is all that is used
   find_package(MPI QUIET COMPONENTS CXX)
-  if(TARGET MPI::MPI_CXX)
+  if(MPI_CXX_FOUND)  # the target MPI::MPI_CXX exists even where MPI does not
     set(PENTAPRISM_HAVE_MPI ON)
   endif()
 endif()
