@@ -106,7 +106,22 @@ TEST_F(GlBackend, CountsAsTheProcessorWithEachCullingTest) {
     settings.camera.fstop = 2.8;
     std::vector<std::string> choices = gl::culling_names();
     choices.emplace_back("improved-dual-space@tile+hyperplane@pixel");
+    choices.emplace_back("hull+dual-space");
+    choices.emplace_back("hull@tile");
     for (const std::string& culling : choices) expect_same(scene, settings, 24, culling);
+}
+
+TEST_F(GlBackend, CountsAsTheProcessorInHulls) {
+    for (const char* name : {"builtin:cubes", "builtin:hand"}) {
+        const Scene scene = load_scene(name);
+        RenderSettings settings = settings_of(64, 48, 4);
+        expect_same(scene, settings, 24, "hull");  // motion alone
+        settings.camera.fstop = 2.8;
+        expect_same(scene, settings, 24, "hull");
+        settings.image.width = 61;  // the middle of the picture is that of a pixel
+        settings.shutter.motion_blur = false;
+        expect_same(scene, settings, 24, "hull");
+    }
 }
 
 TEST_F(GlBackend, SeesTheSameInFilesOfOthers) {
