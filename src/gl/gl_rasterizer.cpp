@@ -14,7 +14,7 @@ int cells_upto(int pixel) {
 
 }  // namespace
 
-GlRasterizer::GlRasterizer(const Frame& frame, const SampleTable& table, const std::string& culling,
+GlRasterizer::GlRasterizer(const Frame& frame, const SampleTable& table, const MethodSettings& method,
                            const PixelRect& limits)
     : table_(table),
       limits_(limits),
@@ -30,7 +30,7 @@ GlRasterizer::GlRasterizer(const Frame& frame, const SampleTable& table, const s
     region_rows_ = std::clamp(cells / region_columns_, 1, std::min(rows_, side));
     const Device::Current current(device_);
     pipeline_ =
-        std::make_unique<Pipeline>(device_, frame, table, culling, Region{0, 0, region_columns_, region_rows_, {}});
+        std::make_unique<Pipeline>(device_, frame, table, method, Region{0, 0, region_columns_, region_rows_, {}});
 }
 
 GlRasterizer::~GlRasterizer() {

@@ -41,9 +41,12 @@ struct Seen {
     CoverMap map;
 };
 
-Seen look(const PosedPicture& picture, Backend backend, const std::string& culling, int tile_size = kCellSize) {
+enum class By { kCpu, kGeometry, kCompute };
+
+Seen look(const PosedPicture& picture, By by, const std::string& culling, int tile_size = kCellSize) {
     MethodSettings method;
-    method.backend = backend;
+    method.backend = by == By::kCpu ? Backend::kCpu : Backend::kGl;
+    method.gl_pipeline = by == By::kGeometry ? GlPipeline::kGeometry : GlPipeline::kCompute;
     method.culling = culling;
     method.tile_size = tile_size;
     const View& view = picture.frame.view;
@@ -85,16 +88,20 @@ class GlBackend : public testing::Test {
 void expect_same(const Scene& scene, const RenderSettings& settings, double frame, const std::string& culling) {
     const support::UseIsa scalar("scalar");
     const PosedPicture picture = pose_picture(scene, settings, frame);
-    const Seen cpu = look(picture, Backend::kCpu, culling), gl = look(picture, Backend::kGl, culling);
+    const Seen cpu = look(picture, By::kCpu, culling);
     EXPECT_GT(cpu.counts.covered, 0) << scene.name;
-    const std::int64_t triangles = differing(cpu.triangle, gl.triangle), depths = differing(cpu.depth, gl.depth);
-    const double per_million = 1e6 / static_cast<double>(cpu.triangle.size());
-    EXPECT_EQ(triangles, 0) << scene.name << ": " << static_cast<double>(triangles) * per_million << " per million";
-    EXPECT_EQ(depths, 0) << scene.name << ": " << static_cast<double>(depths) * per_million << " per million";
-    EXPECT_EQ(cpu.counts.tested, gl.counts.tested) << scene.name << ", " << culling;
-    EXPECT_EQ(cpu.counts.covered, gl.counts.covered) << scene.name << ", " << culling;
-    EXPECT_EQ(cpu.map.tested, gl.map.tested);
-    EXPECT_EQ(cpu.map.covered, gl.map.covered);
+    for (const By by : {By::kGeometry, By::kCompute}) {
+        SCOPED_TRACE(by == By::kGeometry ? "geometry" : "compute");
+        const Seen gl = look(picture, by, culling);
+        const std::int64_t triangles = differing(cpu.triangle, gl.triangle), depths = differing(cpu.depth, gl.depth);
+        const double per_million = 1e6 / static_cast<double>(cpu.triangle.size());
+        EXPECT_EQ(triangles, 0) << scene.name << ": " << static_cast<double>(triangles) * per_million << " per million";
+        EXPECT_EQ(depths, 0) << scene.name << ": " << static_cast<double>(depths) * per_million << " per million";
+        EXPECT_EQ(cpu.counts.tested, gl.counts.tested) << scene.name << ", " << culling;
+        EXPECT_EQ(cpu.counts.covered, gl.counts.covered) << scene.name << ", " << culling;
+        EXPECT_EQ(cpu.map.tested, gl.map.tested);
+        EXPECT_EQ(cpu.map.covered, gl.map.covered);
+    }
 }
 
 TEST_F(GlBackend, SeesTheSameTrianglesAtTheSameDepthsInBuiltinScenes) {
@@ -148,23 +155,25 @@ struct Differences {
 
 void compare_scene(const Scene& scene, const RenderSettings& settings, Differences& found) {
     const PosedPicture picture = pose_picture(scene, settings, 12);
-    Seen gl;
-    try {
-        gl = look(picture, Backend::kGl, "none");
-    } catch (const Error& error) {  // glass
-        EXPECT_EQ(error.kind(), ErrorKind::kBackend) << error.what();
-        EXPECT_NE(std::string(error.what()).find("lets light through"), std::string::npos) << error.what();
-        ++found.refused;
-        return;
-    }
-    const Seen cpu = look(picture, Backend::kCpu, "none");
-    const std::int64_t triangles = differing(cpu.triangle, gl.triangle);
-    EXPECT_EQ(triangles, 0) << scene.name;
+    const Seen cpu = look(picture, By::kCpu, "none");
     ++found.scenes;
-    found.samples += static_cast<std::int64_t>(cpu.triangle.size());
-    found.seen += std::count_if(cpu.triangle.begin(), cpu.triangle.end(), [](auto t) { return t != kNoTriangle; });
-    found.triangles += triangles;
-    found.depths += differing(cpu.depth, gl.depth);
+    for (const By by : {By::kGeometry, By::kCompute}) {
+        Seen gl;
+        try {
+            gl = look(picture, by, "none");
+        } catch (const Error& error) {  // glass
+            EXPECT_EQ(error.kind(), ErrorKind::kBackend) << error.what();
+            EXPECT_NE(std::string(error.what()).find("lets light through"), std::string::npos) << error.what();
+            ++found.refused;
+            return;
+        }
+        const std::int64_t triangles = differing(cpu.triangle, gl.triangle);
+        EXPECT_EQ(triangles, 0) << scene.name;
+        found.samples += static_cast<std::int64_t>(cpu.triangle.size());
+        found.seen += std::count_if(cpu.triangle.begin(), cpu.triangle.end(), [](auto t) { return t != kNoTriangle; });
+        found.triangles += triangles;
+        found.depths += differing(cpu.depth, gl.depth);
+    }
 }
 
 // Ties at edges and between depths are decided alike, so nothing may differ; what does is counted by the million.
@@ -190,7 +199,8 @@ TEST_F(GlBackend, SeesTheSameInEverySharedScene) {
     }
     const double per_million = 1e6 / static_cast<double>(std::max<std::int64_t>(1, found.samples));
     std::printf(
-        "%lld scenes (%lld more with glass refused, %lld unreadable), %lld samples, of which %lld see something: "
+        "%lld scenes (%lld of them with glass refused, %lld more unreadable), %lld samples, of which %lld see "
+        "something: "
         "%.3f per million differ in triangle, %.3f in depth\n",
         static_cast<long long>(found.scenes), static_cast<long long>(found.refused),
         static_cast<long long>(found.unreadable), static_cast<long long>(found.samples),
@@ -240,7 +250,7 @@ TEST_F(GlBackend, RefusesByNameWhatItCannotDo) {
     const PosedPicture picture = pose_picture(load_scene("builtin:cubes"), settings_of(32, 32, 1), 0);
     const auto refusal = [&](const std::string& culling) {
         try {
-            look(picture, Backend::kGl, culling);
+            look(picture, By::kCompute, culling);
         } catch (const Error& error) {
             EXPECT_EQ(error.kind(), ErrorKind::kUsage);
             return std::string(error.what());
@@ -294,13 +304,13 @@ TEST_F(GlBackend, ContextThatIsLostIsOneLine) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     const auto lose_it = [] {
         const PosedPicture picture = pose_picture(load_scene("builtin:cubes"), settings_of(32, 32, 1), 0);
-        look(picture, Backend::kGl, "none");
+        look(picture, By::kCompute, "none");
         {
             const gl::Device::Current current(gl::Device::get());
             eglTerminate(eglGetCurrentDisplay());
         }
         try {
-            look(picture, Backend::kGl, "none");
+            look(picture, By::kCompute, "none");
         } catch (const Error& error) {
             std::fprintf(stderr, "<%s>\n", error.what());
             std::_Exit(static_cast<int>(error.kind()));
@@ -323,7 +333,7 @@ TEST_F(GlBackend, LeavesNoErrorAndNoMemoryBehindAfterAHundredFrames) {
     const PosedPicture picture = pose_picture(load_scene("builtin:cubes"), settings_of(64, 64, 2), 24);
     std::int64_t after_warm_up = 0;
     for (int frame = 0; frame < 100; ++frame) {
-        look(picture, Backend::kGl, "none");
+        look(picture, frame % 2 == 0 ? By::kCompute : By::kGeometry, "none");
         if (frame == 19) after_warm_up = resident_kilobytes();
     }
     const gl::Device::Current current(gl::Device::get());
