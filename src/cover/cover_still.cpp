@@ -75,20 +75,6 @@ void update_tile_farthest(StillTile& tile) {
     tile.tile_farthest = hn::GetLane(hn::MaxOfLanes(f, farthest));
 }
 
-// Sorted by depth, triangles lie anywhere in memory.
-HWY_INLINE void fetch_ahead(const TileWork& work, const std::vector<std::uint32_t>& order, std::size_t i) {
-    constexpr std::size_t kAhead = 8;
-    const auto binned = [&](std::size_t steps) -> const BinnedTriangle& {
-        return work.triangles[order[std::min(i + steps * kAhead, order.size() - 1)]];
-    };
-    const Frame& frame = work.frame;
-    hwy::Prefetch(&binned(3));
-    hwy::Prefetch(&frame.corners[3 * std::size_t{binned(2).triangle}]);
-    hwy::Prefetch(&frame.part_of[binned(2).triangle]);
-    const std::uint32_t* corners = &frame.corners[3 * std::size_t{binned(1).triangle}];
-    for (int corner = 0; corner < 3; ++corner) hwy::Prefetch(&frame.points[corners[corner]]);
-}
-
 void cover_front_to_back(StillTile& tile) {
     const TileWork& work = tile.work;
     StillBatch batch{};
