@@ -314,7 +314,7 @@ void expect_same_distribution(const Agreement& agreement, const char* what) {
 TEST(StoredSamples, DevelopedPicturesAreDirectRendersInTheMeanOfManySeeds) {
     struct Case {
         const char* what;
-        RenderSettings recorded, direct;
+        RenderSettings recorded, direct, wrong;  // `wrong` must be told from what is developed
         Development wanted;
         int border;
     };
@@ -322,7 +322,8 @@ TEST(StoredSamples, DevelopedPicturesAreDirectRendersInTheMeanOfManySeeds) {
     {
         Development far;
         far.focus_distance = 3.0;
-        cases.push_back({"refocused", settings_focused_at(6.0), settings_focused_at(3.0), far, 8});
+        cases.push_back(
+            {"refocused", settings_focused_at(6.0), settings_focused_at(3.0), settings_focused_at(3.45), far, 8});
     }
     {
         RenderSettings wide = settings_focused_at(4.0), narrow = wide;
@@ -332,7 +333,9 @@ TEST(StoredSamples, DevelopedPicturesAreDirectRendersInTheMeanOfManySeeds) {
         Development small;
         small.fstop = 0.06;
         small.focus_distance = 5.0;
-        cases.push_back({"refocused with a smaller aperture", wide, narrow, small, 8});
+        RenderSettings wrong = narrow;
+        wrong.camera.focus_distance = 2.5;
+        cases.push_back({"refocused with a smaller aperture", wide, narrow, wrong, small, 8});
     }
     {
         RenderSettings recorded = settings_focused_at(2.0, 64), direct = settings_focused_at(2.0);
@@ -342,7 +345,9 @@ TEST(StoredSamples, DevelopedPicturesAreDirectRendersInTheMeanOfManySeeds) {
         Development late;
         late.shutter = 0.5;
         late.shutter_offset = 0.25;
-        cases.push_back({"retimed", recorded, direct, late, 0});
+        RenderSettings wrong = direct;
+        wrong.shutter.shutter = 0.75;
+        cases.push_back({"retimed", recorded, direct, wrong, late, 0});
         direct.shutter.position = ShutterPosition::kCenter;
         direct.shutter.curve = trapezoid_shutter(0.3, 0.5);
         direct.shutter.rolling = RollingShutter::kTop;
@@ -352,7 +357,9 @@ TEST(StoredSamples, DevelopedPicturesAreDirectRendersInTheMeanOfManySeeds) {
         rolling.curve = direct.shutter.curve;
         rolling.rolling = RollingShutter::kTop;
         rolling.rolling_duration = 1.25;
-        cases.push_back({"global to rolling, with a curve", recorded, direct, rolling, 0});
+        wrong = direct;
+        wrong.shutter.rolling = RollingShutter::kBottom;
+        cases.push_back({"global to rolling, with a curve", recorded, direct, wrong, rolling, 0});
     }
     for (const Case& c : cases) {
         const auto with_seed = [](RenderSettings settings, std::uint32_t seed) {
@@ -364,14 +371,8 @@ TEST(StoredSamples, DevelopedPicturesAreDirectRendersInTheMeanOfManySeeds) {
         };
         const auto direct = [&](std::uint32_t seed) { return rendered(with_seed(c.direct, seed)); };
         expect_same_distribution(compare_seeds(later, direct, c.border), c.what);
-        // The test would see what is a little wrong.
-        RenderSettings wrong = c.direct;
-        if (c.direct.shutter.shutter)
-            wrong.shutter.shutter = 1.5 * *c.direct.shutter.shutter;
-        else
-            wrong.camera.focus_distance = 1.15 * *c.direct.camera.focus_distance;
-        const Agreement off = compare_seeds(
-            later, [&](std::uint32_t seed) { return rendered(with_seed(wrong, seed)); }, c.border);
+        const auto wrong = [&](std::uint32_t seed) { return rendered(with_seed(c.wrong, seed)); };
+        const Agreement off = compare_seeds(later, wrong, c.border);
         EXPECT_GT(off.largest, 8.0) << c.what;
     }
 }
