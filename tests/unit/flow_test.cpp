@@ -82,7 +82,7 @@ void expect_finite_differences(const char* name, double frame, double step) {
                 for (const int channel : {0, 2})
                     uneven = std::max(uneven,
                                       glm::length(channels.two(channel, x + dx, y + dy) - channels.two(channel, x, y)));
-        if (uneven > 0.5) continue;
+        if (uneven > 0.1) continue;
         ++compared;
         const glm::dvec2 forward = projected(after, then[i]) - place, backward = projected(before, once[i]) - place;
         EXPECT_LT(glm::length(channels.two(0, x, y) - forward), uneven + 1e-3) << name << " vertex " << i;
