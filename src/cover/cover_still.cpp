@@ -19,7 +19,6 @@
 #include <cmath>
 #include <hwy/highway.h>
 
-#include "base/cpu.h"
 #include "cover/cover.h"
 #include "cover/front_to_back.h"
 
@@ -174,27 +173,13 @@ HWY_AFTER_NAMESPACE();
 #endif  // HWY_SCALAR
 
 #if HWY_ONCE
+#include "base/cpu_dispatch.h"
+
 namespace pentaprism {
 
 void cover_still(const TileWork& work, Hits& hits, CoverCounts& counts) {
-    switch (cpu_isa()) {
-#ifndef PENTAPRISM_SCALAR_ONLY
-#if HWY_TARGETS & HWY_AVX3
-        case Isa::kAvx512:
-            return N_AVX3::cover_still_tile(work, hits, counts);
-#endif
-#if HWY_TARGETS & HWY_AVX2
-        case Isa::kAvx2:
-            return N_AVX2::cover_still_tile(work, hits, counts);
-#endif
-#if HWY_TARGETS & HWY_NEON
-        case Isa::kNeon:
-            return N_NEON::cover_still_tile(work, hits, counts);
-#endif
-#endif
-        default:
-            return cover_with_test(work, *find_cull_test("improved-dual-space"), hits, counts);
-    }
+    PENTAPRISM_RETURN_FOR_CPU(cover_still_tile(work, hits, counts));
+    return cover_with_test(work, *find_cull_test("improved-dual-space"), hits, counts);
 }
 
 }  // namespace pentaprism
