@@ -73,6 +73,10 @@ std::shared_ptr<const RegionHits> GlRasterizer::hits_of(const Region& region, co
     return kept;
 }
 
+const char* GlRasterizer::pipeline() const {
+    return pipeline_->takes_compute() ? "compute" : "geometry";
+}
+
 void GlRasterizer::cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map) const {
     const Region region = region_of(tile.cell_x(), tile.cell_y());
     const std::shared_ptr<const RegionHits> found = hits_of(region, tile);

@@ -16,6 +16,7 @@ class GlRasterizer : public Rasterizer {
     GlRasterizer(const Frame& frame, const SampleTable& table, const MethodSettings& method, const PixelRect& limits);
     ~GlRasterizer() override;
     void cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map) const override;
+    const char* pipeline() const override;
 
   private:
     Region region_of(int cell_x, int cell_y) const;

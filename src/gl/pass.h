@@ -1,6 +1,7 @@
 #pragma once
 // What finds the hits of one pass of samples: one file for each way to do it. All of it needs a Device::Current.
 
+#include "gl/culling.h"
 #include "gl/device.h"
 #include "gl/opacity_upload.h"
 #include "gl/region.h"

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMostComputeSlots = 16;  // samples of a pixel in a pass that no framebuffer limits
 
-bool takes_compute(const Device& device, const Frame& frame, GlPipeline pipeline) {
+bool choose_compute(const Device& device, const Frame& frame, GlPipeline pipeline) {
     if (pipeline == GlPipeline::kGeometry) return false;
     if (TilePass::can_do(device, frame)) return true;
     if (pipeline == GlPipeline::kAuto) return false;
@@ -45,7 +45,8 @@ std::vector<std::uint32_t> read_counters(GLuint image, const Region& region) {
 Pipeline::Pipeline(Device& device, const Frame& frame, const SampleTable& table, const MethodSettings& method,
                    const Region& largest)
     : table_(table),
-      compute_(takes_compute(device, frame, method.gl_pipeline)),
+      culling_(parse_gl_culling(method.culling)),
+      compute_(choose_compute(device, frame, method.gl_pipeline)),
       slots_(std::min(compute_ ? kMostComputeSlots : device.samples(), table.slots())),
       width_(largest.cell_columns * kCellSize),
       height_(largest.cell_rows * kCellSize),
@@ -57,9 +58,9 @@ Pipeline::Pipeline(Device& device, const Frame& frame, const SampleTable& table,
       covered_(counter_image(width_, height_)) {
     const PassData data{frame, table, geometry_, opacity_, samples_, collected_};
     if (compute_)
-        pass_ = std::make_unique<TilePass>(device, data, method.culling, width_, height_);
+        pass_ = std::make_unique<TilePass>(device, data, culling_, width_, height_);
     else
-        pass_ = std::make_unique<RasterPass>(device, data, method.culling, width_, height_, slots_);
+        pass_ = std::make_unique<RasterPass>(device, data, culling_, width_, height_, slots_);
     check("making the buffers of a frame");
 }
 

@@ -23,11 +23,13 @@ class Pipeline {
              const Region& largest);
 
     RegionHits render(const Region& region);
+    bool takes_compute() const { return compute_; }
 
   private:
     void receive(const Region& region, int first_slot, int count, RegionHits& hits);
 
     const SampleTable& table_;
+    Culling culling_;
     bool compute_;
     int slots_, width_, height_;
     FrameUpload geometry_;

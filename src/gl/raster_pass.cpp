@@ -1,18 +1,16 @@
 #include "gl/raster_pass.h"
 
 #include "cover/hits.h"
-#include "gl/culling.h"
 
 namespace pentaprism::gl {
 namespace {
 
-const Program& raster_program(Device& device, const std::string& culling) {
-    const Culling steps = parse_gl_culling(culling);
-    const std::string shader = culling_shader(steps);
+const Program& raster_program(Device& device, const Culling& culling) {
+    const std::string shader = culling_shader(culling);
     return device.program("raster " + shader, [&] {
         const ShaderSource extra[] = {{"culling", shader}};
         std::vector<std::string> defines = device.defines();
-        if (asks_hull_of_pixels(steps)) defines.emplace_back("DRAW_HULL");
+        if (asks_hull_of_pixels(culling)) defines.emplace_back("DRAW_HULL");
         return Program({{GL_VERTEX_SHADER, "gl/raster.vert.glsl"},
                         {GL_GEOMETRY_SHADER, "gl/raster.geom.glsl"},
                         {GL_FRAGMENT_SHADER, "gl/raster.frag.glsl"}},
@@ -28,8 +26,7 @@ const Program& collector_program(Device& device) {
 
 }  // namespace
 
-RasterPass::RasterPass(Device& device, const PassData& data, const std::string& culling, int width, int height,
-                       int slots)
+RasterPass::RasterPass(Device& device, const PassData& data, const Culling& culling, int width, int height, int slots)
     : data_(data),
       raster_(raster_program(device, culling)),
       collector_(collector_program(device)),

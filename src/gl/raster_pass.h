@@ -10,7 +10,7 @@ namespace pentaprism::gl {
 class RasterPass : public Pass {
   public:
     /// For regions of at most that many pixels, and passes of at most `slots` samples.
-    RasterPass(Device& device, const PassData& data, const std::string& culling, int width, int height, int slots);
+    RasterPass(Device& device, const PassData& data, const Culling& culling, int width, int height, int slots);
     void run(const Region& region, int count, bool is_first) override;
 
   private:

@@ -19,6 +19,9 @@ class Rasterizer {
     /// As cover_with_test(): hits, counts and map of a tile. `hits` has been reset. Thread-safe; the pixels around are
     /// rendered with the first tile that asks, while others wait.
     virtual void cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map) const = 0;
+
+    /// GlPipeline that does it: geometry or compute.
+    virtual const char* pipeline() const = 0;
 };
 
 /// Of `method` culling and gl_pipeline count. `limits`: the pixels that will be asked for. Frame and table must outlive

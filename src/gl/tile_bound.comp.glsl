@@ -1,9 +1,9 @@
 // First of three: which triangles may be seen, in which pixels, and how many are in each tile.
 
+layout(local_size_x = 64) in;
+
 #include "gl/bound.glsl"
 #include "gl/tiles.glsl"
-
-layout(local_size_x = 64) in;
 
 uniform uint items, first_draw, draw_count;  // of the batch
 

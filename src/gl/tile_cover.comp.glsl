@@ -2,14 +2,14 @@
 // list at a time, one each, to the middle of the cell; then each pixel asks for all of its samples and all 64 the culling
 // test, the exact test and whether what it hits is nearer.
 
+layout(local_size_x = 8, local_size_y = 8) in;
+
 #include "cover/exact.glsl"
 #include "bound/screen_bounds.glsl"
 #include "culling"
 #include "frame/opacity.glsl"
 #include "gl/samples.glsl"
 #include "gl/tiles.glsl"
-
-layout(local_size_x = 8, local_size_y = 8) in;
 
 uniform ivec2 some_tiles;  // those that have lists: from, to
 

@@ -1,8 +1,8 @@
 // Second of three: the records of each tile, one list after the other. Where each begins, the processor has summed up.
 
-#include "gl/tiles.glsl"
-
 layout(local_size_x = 64) in;
+
+#include "gl/tiles.glsl"
 
 uniform uint record_count;
 uniform ivec2 some_tiles;  // those whose lists are made: from, to

@@ -5,26 +5,38 @@
 #include <limits>
 
 #include "cover/hits.h"
-#include "gl/culling.h"
 
 namespace pentaprism::gl {
 namespace {
 
 constexpr GLuint kPointsBlock = 1, kDrawsBlock = 4, kRecordsBlock = 5, kCountsBlock = 6, kEntriesBlock = 7;
 constexpr int kTile = 8, kCellTiles = kCellSize / kTile;
-constexpr std::uint32_t kGroup = 64;             // invocations of the shaders that sort
-constexpr std::uint32_t kMostRecords = 1 << 22;  // 64 MB
+constexpr std::uint32_t kGroup = 64;  // invocations of the shaders that sort
+// What is sorted at once, 64 MB of each: more triangles take several batches, longer lists several ranges of tiles. A
+// tile has each record once at most, so that a list of its own always fits.
+constexpr std::uint32_t kMostRecords = 1 << 22, kMostEntries = 1 << 24;
 
 const Program& sorting_program(Device& device, const char* path) {
     return device.program(path, [&] { return Program({{GL_COMPUTE_SHADER, path}}, device.defines()); });
 }
 
-const Program& cover_program(Device& device, const std::string& culling) {
-    const std::string shader = culling_shader(parse_gl_culling(culling));
+const Program& cover_program(Device& device, const Culling& culling) {
+    const std::string shader = culling_shader(culling);
     return device.program("tiles " + shader, [&] {
         const ShaderSource extra[] = {{"culling", shader}};
         return Program({{GL_COMPUTE_SHADER, "gl/tile_cover.comp.glsl"}}, device.defines(), extra);
     });
+}
+
+std::uint32_t room_for(const Device& device, std::int64_t bytes_each, std::uint32_t most) {
+    return static_cast<std::uint32_t>(std::min<std::int64_t>(most, device.most_block_bytes() / bytes_each));
+}
+
+// Those of TilePass::plan_draws(), unless a part is taken in pieces, which makes one more for each batch.
+std::size_t count_draws(const Frame& frame) {
+    std::size_t draws = 0;
+    for (const Part& part : frame.parts) draws += part.moves ? static_cast<std::size_t>(part.segments) : 1;
+    return draws;
 }
 
 void dispatch(std::uint32_t items) {
@@ -38,18 +50,16 @@ void dispatch(std::uint32_t items) {
 bool TilePass::can_do(const Device& device, const Frame& frame) {
     const auto fits = [&](std::size_t bytes) { return static_cast<std::int64_t>(bytes) <= device.most_block_bytes(); };
     return fits(frame.points.size() * sizeof(glm::vec4)) && fits(frame.corners.size() * sizeof(std::uint32_t)) &&
-           fits(frame.depths.size() * sizeof(float));
+           fits(frame.depths.size() * sizeof(float)) && fits(count_draws(frame) * sizeof(Draw));
 }
 
-TilePass::TilePass(Device& device, const PassData& data, const std::string& culling, int width, int height)
+TilePass::TilePass(Device& device, const PassData& data, const Culling& culling, int width, int height)
     : data_(data),
       bound_(sorting_program(device, "gl/tile_bound.comp.glsl")),
       fill_(sorting_program(device, "gl/tile_fill.comp.glsl")),
       cover_(cover_program(device, culling)),
-      most_records_(static_cast<std::uint32_t>(
-          std::min<std::int64_t>(kMostRecords, device.most_block_bytes() / static_cast<int>(sizeof(glm::uvec4))))),
-      most_entries_(static_cast<std::uint32_t>(
-          std::min<std::int64_t>(device.most_block_bytes() / 4, std::numeric_limits<std::int32_t>::max()))) {
+      most_records_(room_for(device, sizeof(glm::uvec4), kMostRecords)),
+      most_entries_(room_for(device, sizeof(std::uint32_t), kMostEntries)) {
     plan_draws();
     std::uint32_t most_items = 0;
     for (const Batch& batch : batches_) most_items = std::max(most_items, batch.items);
@@ -123,7 +133,7 @@ void TilePass::fill(const TileRange& range) {
     fill_.set("some_tiles", range.from, range.to);
     fill_.use();
     dispatch(record_count_);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
 void TilePass::cover(const TileRange& range, const Region& region) {

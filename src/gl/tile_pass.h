@@ -11,7 +11,7 @@ namespace pentaprism::gl {
 
 class TilePass : public Pass {
   public:
-    TilePass(Device& device, const PassData& data, const std::string& culling, int width, int height);
+    TilePass(Device& device, const PassData& data, const Culling& culling, int width, int height);
     void run(const Region& region, int count, bool is_first) override;
 
     /// Whether the frame's arrays are small enough for this device's storage blocks.
