@@ -7,6 +7,9 @@ namespace {
 
 // Samples that are kept at once: 8 bytes each here, 24 on the device for those of a pass.
 constexpr std::int64_t kMostSamples = 1 << 24;
+// Cells of a region: a triangle all over it is in 32768 tiles of gl/tiles.glsl, and loops over those must stay short
+// (gl/tile_pass.cpp).
+constexpr std::int64_t kMostCells = 2048;
 
 int cells_upto(int pixel) {
     return (pixel + kCellSize - 1) / kCellSize;
@@ -24,7 +27,8 @@ GlRasterizer::GlRasterizer(const Frame& frame, const SampleTable& table, const M
       columns_(cells_upto(limits.x1) - first_cell_x_),
       rows_(cells_upto(limits.y1) - first_cell_y_) {
     const std::int64_t samples = std::min(kMostSamples, device_.most_entries());
-    const int cells = static_cast<int>(std::max<std::int64_t>(1, samples / (kCellSize * kCellSize * table.slots())));
+    const int cells =
+        static_cast<int>(std::clamp<std::int64_t>(samples / (kCellSize * kCellSize * table.slots()), 1, kMostCells));
     const int side = device_.max_size() / kCellSize;
     region_columns_ = std::min({columns_, cells, side});
     region_rows_ = std::clamp(cells / region_columns_, 1, std::min(rows_, side));

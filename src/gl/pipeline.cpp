@@ -12,8 +12,6 @@
 namespace pentaprism::gl {
 namespace {
 
-constexpr int kMostComputeSlots = 16;  // samples of a pixel in a pass that no framebuffer limits
-
 bool choose_compute(const Device& device, const Frame& frame, GlPipeline pipeline) {
     if (pipeline == GlPipeline::kGeometry) return false;
     if (TilePass::can_do(device, frame)) return true;
@@ -47,7 +45,7 @@ Pipeline::Pipeline(Device& device, const Frame& frame, const SampleTable& table,
     : table_(table),
       culling_(parse_gl_culling(method.culling)),
       compute_(choose_compute(device, frame, method.gl_pipeline)),
-      slots_(std::min(compute_ ? kMostComputeSlots : device.samples(), table.slots())),
+      slots_(std::min(compute_ ? TilePass::kMostSlots : device.samples(), table.slots())),
       width_(largest.cell_columns * kCellSize),
       height_(largest.cell_rows * kCellSize),
       geometry_(frame),

@@ -12,6 +12,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gl/tiles.glsl"
 
 uniform ivec2 some_tiles;  // those that have lists: from, to
+uniform uvec2 some_entries;  // of each list: from, to
 
 layout(binding = 0) uniform usamplerBuffer sample_points;
 layout(binding = 0, r32ui) uniform restrict uimage2D tested;  // exact tests of each pixel
@@ -70,9 +71,10 @@ void main() {
     ivec2 pixel = (first_tile + tile) * kTile + ivec2(gl_LocalInvocationID.xy);
     bool is_wanted = pixel.x >= region.x && pixel.x < region.y && pixel.y >= region.z && pixel.y < region.w;
     vec2 centre = cell_centre(pixel / kCellSize);
-    uint own = gl_LocalInvocationIndex, begin = index == some_tiles.x ? 0u : ends[index - 1], end = ends[index];
+    uint own = gl_LocalInvocationIndex, begin = index == some_tiles.x ? 0u : ends[index - 1];
+    uint end = min(ends[index], begin + some_entries.y);
     uvec2 counts = uvec2(0u);
-    for (uint first = begin; first < end; first += kTilePixels) {
+    for (uint first = begin + some_entries.x; first < end; first += kTilePixels) {
         uint count = min(end - first, kTilePixels);
         barrier();
         if (own < count) fetch(first + own, own, centre);

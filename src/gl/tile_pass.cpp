@@ -11,7 +11,12 @@ namespace {
 
 constexpr GLuint kPointsBlock = 1, kDrawsBlock = 4, kRecordsBlock = 5, kCountsBlock = 6, kEntriesBlock = 7;
 constexpr int kTile = 8, kCellTiles = kCellSize / kTile;
-constexpr std::uint32_t kGroup = 64;  // invocations of the shaders that sort
+constexpr std::uint32_t kGroup = 64;  // invocations of the shaders that sort, and of a tile
+// Pairs of triangle and sample that an invocation is asked at once: longer lists take several dispatches. Drivers stop
+// what takes long: on a card a watchdog, and Mesa's llvmpipe leaves a shader's loops, all taken together, after 65535
+// turns, without an error. No pair has more than 126: those of the culling test "hull" are about 70.
+constexpr std::uint32_t kMostPairs = 512;
+static_assert(kMostPairs >= kGroup * TilePass::kMostSlots);
 // What is sorted at once, 64 MB of each: more triangles take several batches, longer lists several ranges of tiles. A
 // tile has each record once at most, so that a list of its own always fits.
 constexpr std::uint32_t kMostRecords = 1 << 22, kMostEntries = 1 << 24;
@@ -114,10 +119,12 @@ void TilePass::bin(const Batch& batch, const Region& region) {
     offsets_.resize(tiles);
     for (std::size_t t = 0; t < tiles; ++t) {
         const int tile = static_cast<int>(t);
-        if (ranges_.empty() || counts[t] > most_entries_ - ranges_.back().entries) ranges_.push_back({tile, tile, 0});
+        if (ranges_.empty() || counts[t] > most_entries_ - ranges_.back().entries)
+            ranges_.push_back({tile, tile, 0, 0});
         TileRange& range = ranges_.back();
         offsets_[t] = range.entries;
         range.entries += counts[t];
+        range.longest = std::max(range.longest, counts[t]);
         range.to = tile + 1;
     }
 }
@@ -136,11 +143,15 @@ void TilePass::fill(const TileRange& range) {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-void TilePass::cover(const TileRange& range, const Region& region) {
+void TilePass::cover(const TileRange& range, const Region& region, int count) {
+    const std::uint32_t step = kMostPairs / static_cast<std::uint32_t>(count) / kGroup * kGroup;
     cover_.set("some_tiles", range.from, range.to);
     cover_.use();
-    glDispatchCompute(region.cell_columns * kCellTiles, region.cell_rows * kCellTiles, 1);
-    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    for (std::uint32_t done = 0; done < range.longest; done += step) {
+        cover_.set("some_entries", done, done + step);
+        glDispatchCompute(region.cell_columns * kCellTiles, region.cell_rows * kCellTiles, 1);
+        glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    }
 }
 
 void TilePass::run(const Region& region, int count, bool is_first) {
@@ -163,7 +174,7 @@ void TilePass::run(const Region& region, int count, bool is_first) {
         for (const TileRange& range : ranges_) {
             if (is_first || batches_.size() > 1 || ranges_.size() > 1) fill(range);
             entries_.bind(GL_SHADER_STORAGE_BUFFER, kEntriesBlock);
-            cover(range, region);
+            cover(range, region, count);
         }
     }
 }

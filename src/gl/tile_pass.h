@@ -11,6 +11,8 @@ namespace pentaprism::gl {
 
 class TilePass : public Pass {
   public:
+    static constexpr int kMostSlots = 8;  ///< samples of a pixel in a pass, which no framebuffer limits
+
     TilePass(Device& device, const PassData& data, const Culling& culling, int width, int height);
     void run(const Region& region, int count, bool is_first) override;
 
@@ -27,16 +29,16 @@ class TilePass : public Pass {
         std::size_t first_draw, draws;
         std::uint32_t items;
     };
-    /// Tiles whose lists are made at once, and how long those are together.
+    /// Tiles whose lists are made at once, and how long those are together, and the longest.
     struct TileRange {
         int from, to;
-        std::uint32_t entries;
+        std::uint32_t entries, longest;
     };
 
     void plan_draws();
     void bin(const Batch& batch, const Region& region);
     void fill(const TileRange& range);
-    void cover(const TileRange& range, const Region& region);
+    void cover(const TileRange& range, const Region& region, int count);
     void set_tiles(const Program& program, const Region& region) const;
 
     PassData data_;
