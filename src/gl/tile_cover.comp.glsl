@@ -11,6 +11,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "gl/samples.glsl"
 #include "gl/tiles.glsl"
 
+uniform ivec2 first_group;   // the tile of the first
 uniform ivec2 some_tiles;  // those that have lists: from, to
 uniform uvec2 some_entries;  // of each list: from, to
 
@@ -65,7 +66,7 @@ uvec2 cover_pixel(uint place, ivec2 pixel, vec2 centre) {
 }
 
 void main() {
-    ivec2 tile = ivec2(gl_WorkGroupID.xy);
+    ivec2 tile = first_group + ivec2(gl_WorkGroupID.xy);
     int index = tile.y * tiles.x + tile.x;
     if (index < some_tiles.x || index >= some_tiles.y) return;
     ivec2 pixel = (first_tile + tile) * kTile + ivec2(gl_LocalInvocationID.xy);

@@ -114,7 +114,8 @@ void TilePass::bin(const Batch& batch, const Region& region) {
     dispatch(batch.items);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT | GL_SHADER_STORAGE_BARRIER_BIT);
     counts_.read(0, counts.size() * sizeof counts[0], counts.data());
-    record_count_ = counts[tiles];
+    record_count_ = counts.back();
+    counts.pop_back();
     ranges_.clear();
     offsets_.resize(tiles);
     for (std::size_t t = 0; t < tiles; ++t) {
@@ -127,6 +128,7 @@ void TilePass::bin(const Batch& batch, const Region& region) {
         range.longest = std::max(range.longest, counts[t]);
         range.to = tile + 1;
     }
+    lengths_ = std::move(counts);
 }
 
 void TilePass::fill(const TileRange& range) {
@@ -143,13 +145,26 @@ void TilePass::fill(const TileRange& range) {
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
+// A rectangle of tiles that has them all.
+PixelRect TilePass::tiles_longer_than(std::uint32_t length, const TileRange& range, int columns) const {
+    PixelRect r{columns, 0, std::numeric_limits<int>::max(), 0};
+    for (int tile = range.from; tile < range.to; ++tile) {
+        if (lengths_[tile] <= length) continue;
+        const int x = tile % columns, y = tile / columns;
+        r = {std::min(r.x0, x), std::max(r.x1, x + 1), std::min(r.y0, y), std::max(r.y1, y + 1)};
+    }
+    return r;
+}
+
 void TilePass::cover(const TileRange& range, const Region& region, int count) {
     const std::uint32_t step = kMostPairs / static_cast<std::uint32_t>(count) / kGroup * kGroup;
     cover_.set("some_tiles", range.from, range.to);
     cover_.use();
     for (std::uint32_t done = 0; done < range.longest; done += step) {
+        const PixelRect r = tiles_longer_than(done, range, region.cell_columns * kCellTiles);
         cover_.set("some_entries", done, done + step);
-        glDispatchCompute(region.cell_columns * kCellTiles, region.cell_rows * kCellTiles, 1);
+        cover_.set("first_group", r.x0, r.y0);
+        glDispatchCompute(r.x1 - r.x0, r.y1 - r.y0, 1);
         glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
     }
 }

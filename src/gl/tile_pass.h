@@ -38,6 +38,7 @@ class TilePass : public Pass {
     void plan_draws();
     void bin(const Batch& batch, const Region& region);
     void fill(const TileRange& range);
+    PixelRect tiles_longer_than(std::uint32_t length, const TileRange& range, int columns) const;
     void cover(const TileRange& range, const Region& region, int count);
     void set_tiles(const Program& program, const Region& region) const;
 
@@ -51,6 +52,7 @@ class TilePass : public Pass {
     // Of the batch that is binned.
     std::uint32_t record_count_ = 0;
     std::vector<std::uint32_t> offsets_;  // of each tile's list within its range
+    std::vector<std::uint32_t> lengths_;
     std::vector<TileRange> ranges_;
 };
 
