@@ -2,111 +2,23 @@
 // the same counts.
 
 #include <algorithm>
-#include <bit>
 #include <cstdio>
 #include <cstdlib>
 #include <epoxy/egl.h>
 #include <filesystem>
 #include <fstream>
-#include <gtest/gtest.h>
 #include <optional>
-#include <pentaprism/error.h>
 #include <pentaprism/render.h>
-#include <pentaprism/settings.h>
 
 #include "gl/culling.h"
-#include "gl/device.h"
-#include "peer/posed_picture.h"
-#include "render/visibility.h"
-#include "support/isa.h"
+#include "support/gl_look.h"
 #include "support/random.h"
 #include "support/scenes.h"
 
 namespace pentaprism {
 namespace {
 
-constexpr int kWidth = 96, kHeight = 72, kSpp = 6;  // six: the last pass is not full
-
-RenderSettings settings_of(int width = kWidth, int height = kHeight, int spp = kSpp) {
-    RenderSettings settings;
-    settings.image.width = width;
-    settings.image.height = height;
-    settings.image.spp = spp;
-    return settings;
-}
-
-struct Seen {
-    std::vector<std::uint32_t> triangle, depth;  // tile by tile, as in Hits; bits of the depth
-    CoverCounts counts;
-    CoverMap map;
-    std::string pipeline;
-};
-
-enum class By { kCpu, kGeometry, kCompute, kAuto };
-
-Seen look(const PosedPicture& picture, By by, const std::string& culling, int tile_size = kCellSize) {
-    MethodSettings method;
-    method.backend = by == By::kCpu ? Backend::kCpu : Backend::kGl;
-    method.gl_pipeline = by == By::kGeometry  ? GlPipeline::kGeometry
-                         : by == By::kCompute ? GlPipeline::kCompute
-                                              : GlPipeline::kAuto;
-    method.culling = culling;
-    method.tile_size = tile_size;
-    const View& view = picture.frame.view;
-    const Visibility visibility(picture.frame, picture.samples, method, {0, view.width, 0, view.height});
-    Seen seen;
-    seen.pipeline = visibility.gl_pipeline();
-    seen.map.width = view.width;
-    seen.map.height = view.height;
-    seen.map.tested.resize(static_cast<std::size_t>(view.width) * view.height);
-    seen.map.covered.resize(seen.map.tested.size());
-    Hits hits;
-    for (const Tile& tile : visibility.tiles()) {
-        visibility.cover(tile, hits, seen.counts, &seen.map);
-        seen.triangle.insert(seen.triangle.end(), hits.triangle.begin(), hits.triangle.end());
-        for (const float depth : hits.depth) seen.depth.push_back(std::bit_cast<std::uint32_t>(depth));
-    }
-    return seen;
-}
-
-std::int64_t differing(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
-    EXPECT_EQ(a.size(), b.size());
-    std::int64_t n = 0;
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) n += a[i] != b[i];
-    return n;
-}
-
-class GlBackend : public testing::Test {
-  protected:
-    void SetUp() override {
-        try {
-            gl::Device::get();
-        } catch (const Error& error) {
-            GTEST_SKIP() << error.what();
-        }
-    }
-};
-
-// Counts are those of boxes in double, as one processor target makes them; the others' boxes in float are a little
-// wider.
-void expect_same(const Scene& scene, const RenderSettings& settings, double frame, const std::string& culling) {
-    const support::UseIsa scalar("scalar");
-    const PosedPicture picture = pose_picture(scene, settings, frame);
-    const Seen cpu = look(picture, By::kCpu, culling);
-    EXPECT_GT(cpu.counts.covered, 0) << scene.name;
-    for (const By by : {By::kGeometry, By::kCompute}) {
-        SCOPED_TRACE(by == By::kGeometry ? "geometry" : "compute");
-        const Seen gl = look(picture, by, culling);
-        const std::int64_t triangles = differing(cpu.triangle, gl.triangle), depths = differing(cpu.depth, gl.depth);
-        const double per_million = 1e6 / static_cast<double>(cpu.triangle.size());
-        EXPECT_EQ(triangles, 0) << scene.name << ": " << static_cast<double>(triangles) * per_million << " per million";
-        EXPECT_EQ(depths, 0) << scene.name << ": " << static_cast<double>(depths) * per_million << " per million";
-        EXPECT_EQ(cpu.counts.tested, gl.counts.tested) << scene.name << ", " << culling;
-        EXPECT_EQ(cpu.counts.covered, gl.counts.covered) << scene.name << ", " << culling;
-        EXPECT_EQ(cpu.map.tested, gl.map.tested);
-        EXPECT_EQ(cpu.map.covered, gl.map.covered);
-    }
-}
+using namespace support;
 
 TEST_F(GlBackend, SeesTheSameTrianglesAtTheSameDepthsInBuiltinScenes) {
     for (const char* name : {"builtin:cubes", "builtin:hand", "builtin:fairy-forest"}) {
@@ -262,81 +174,6 @@ TEST_F(GlBackend, SeesTrianglesAtTheCameraPlaneAlike) {
     settings.shutter.shutter = 4.0;
     for (const char* culling : {"none", "improved-dual-space", "hull", "hyperplane"})
         for (const double frame : {4.0, 8.0, 12.0}) expect_same(scene, settings, frame, culling);
-}
-
-// As on a device whose storage blocks hold that many bytes.
-class SmallBlocks {
-  public:
-    explicit SmallBlocks(std::int64_t bytes) { gl::Device::get().pretend_block_bytes(bytes); }
-    ~SmallBlocks() { gl::Device::get().pretend_block_bytes(0); }
-};
-
-std::int64_t largest_array(const Frame& frame) {
-    return static_cast<std::int64_t>(
-        std::max(frame.points.size() * sizeof(glm::vec4), frame.corners.size() * sizeof(std::uint32_t)));
-}
-
-// Squares behind one another, each a little farther and `layers` times there.
-Scene stack_of_squares(int count, float half, int layers = 1) {
-    Scene scene;
-    scene.name = "stack";
-    support::add_camera(scene, "camera", {0, 0, 2});
-    const Index first = support::add_square(scene, "square", {0, 0, 0}, half);
-    Primitive& stack = scene.meshes[scene.nodes[first].mesh].primitives[0];
-    const Primitive square = stack;
-    stack = {};
-    for (int k = 0; k < count; ++k) {
-        for (const glm::vec3& p : square.positions)
-            stack.positions.emplace_back(p.x, p.y, -1e-3f * static_cast<float>(k % 977));
-        stack.normals.insert(stack.normals.end(), square.normals.begin(), square.normals.end());
-        for (int layer = 0; layer < layers; ++layer)
-            for (const std::uint32_t i : square.indices) stack.indices.push_back(i + 4 * static_cast<std::uint32_t>(k));
-    }
-    return scene;
-}
-
-TEST_F(GlBackend, LosesNothingWhereListsDoNotFitAtOnce) {
-    const RenderSettings settings = settings_of(64, 64, 10);  // more passes than one, which use lists again
-    const PosedPicture picture = pose_picture(stack_of_squares(400, 0.4f, 3), settings, 0);
-    const Seen roomy = look(picture, By::kCompute, "none");
-    // A block holds neither all triangles, 16 bytes each, nor, of those of a batch, the tiles that each is in, 4 bytes
-    // each: several batches, and several ranges of tiles. In a tile each is tested 64 times a sample at most.
-    const std::int64_t bytes = largest_array(picture.frame), batches = (16 * 2400 + bytes - 1) / bytes;
-    EXPECT_GT(batches, 1);
-    EXPECT_GT(4 * (roomy.counts.tested / (64 * 10)) / batches, bytes);
-    const SmallBlocks small(bytes);
-    const Seen cramped = look(picture, By::kCompute, "none");
-    EXPECT_EQ(roomy.triangle, cramped.triangle);
-    EXPECT_EQ(roomy.depth, cramped.depth);
-    EXPECT_EQ(roomy.map.tested, cramped.map.tested);
-    EXPECT_EQ(roomy.map.covered, cramped.map.covered);
-}
-
-// Drivers may leave long loops: 20000 triangles in a tile, and a triangle in 68400 tiles.
-TEST_F(GlBackend, LosesNothingInLongLists) {
-    expect_same(stack_of_squares(10000, 0.01f), settings_of(16, 16, 9), 0, "none");
-    const PosedPicture wide = pose_picture(stack_of_squares(1, 3.0f), settings_of(2400, 1800, 1), 0);
-    const Seen cpu = look(wide, By::kCpu, "none"), gl = look(wide, By::kCompute, "none");
-    EXPECT_EQ(gl.counts.covered, 2400 * 1800);
-    EXPECT_EQ(cpu.triangle, gl.triangle);
-    EXPECT_EQ(cpu.depth, gl.depth);
-}
-
-TEST_F(GlBackend, TakesComputeWhereItFitsElseGeometry) {
-    const PosedPicture picture = pose_picture(load_scene("builtin:cubes"), settings_of(32, 32, 1), 0);
-    EXPECT_EQ(look(picture, By::kCpu, "none").pipeline, "");
-    EXPECT_EQ(look(picture, By::kAuto, "none").pipeline, "compute");
-    const SmallBlocks small(largest_array(picture.frame) - 1);
-    EXPECT_EQ(look(picture, By::kAuto, "none").pipeline, "geometry");
-    try {
-        look(picture, By::kCompute, "none");
-        FAIL() << "compute was taken";
-    } catch (const Error& error) {
-        EXPECT_EQ(error.kind(), ErrorKind::kBackend);
-        const std::string said = error.what();
-        EXPECT_EQ(said.find('\n'), said.npos);
-        EXPECT_EQ(said.find("--gl-pipeline compute: "), 0u) << said;
-    }
 }
 
 TEST_F(GlBackend, SeesOrthographicPicturesAlike) {
