@@ -4,6 +4,7 @@
 
 #include "cover/cover.h"
 #include "cover/exact.h"
+#include "cover/front_to_back.h"
 #include "frame/opacity.h"
 
 namespace pentaprism {
@@ -67,6 +68,9 @@ class Walk {
         for (std::size_t i = 0; i < culling.size(); ++i) {
             steps_[i].test = culling[i].test;
             for (CullState& state : steps_[i].states) state.setup = &steps_[i].setup;
+            if (!culling[i].test->asks_occluders) continue;
+            steps_[i].setup.occluders = &occluders_;
+            asks_occluders_ = true;
         }
         if (!steps(Grain::kBucket).empty()) {
             buckets_.reserve(vectors_.size());
@@ -74,6 +78,20 @@ class Walk {
         }
     }
 
+    void cover_all() {
+        if (!asks_occluders_) {
+            for (const std::uint32_t entry : work_.list) cover(work_.triangles[entry]);
+            return;
+        }
+        constexpr std::size_t kBetweenUpdates = 32;
+        const std::vector<std::uint32_t> order = front_to_back(work_);
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            if (std::has_single_bit(i) || i % kBetweenUpdates == 0) update_occluders();
+            cover(work_.triangles[order[i]]);
+        }
+    }
+
+  private:
     void cover(const BinnedTriangle& binned) {
         triangle_ = localize(work_.frame, binned.triangle, binned.segment, centre_, work_.scale);
         for (Step& step : steps_)
@@ -88,7 +106,6 @@ class Walk {
         });
     }
 
-  private:
     std::span<Step> steps(Grain grain) {
         const auto g = static_cast<std::size_t>(grain);
         return std::span(steps_).subspan(first_step_[g], step_count_[g]);
@@ -157,7 +174,8 @@ class Walk {
         if (!hit.hit) return;
         ++counts_.covered;
         const std::size_t s = job * kLanes + lane;
-        if (!(hit.depth < hits_.depth[s])) return;
+        if (!(hit.depth < hits_.depth[s] || (hit.depth == hits_.depth[s] && triangle_.triangle < hits_.triangle[s])))
+            return;
         if (triangle_.alpha_tested) {
             const int index = work_.samples.indices(px / kBlockSize, py / kBlockSize)[slot * kLanes + lane];
             if (!is_opaque_at(work_.frame, triangle_.triangle, hit.barycentrics, px, py, index, work_.samples.spp()))
@@ -165,6 +183,31 @@ class Walk {
         }
         hits_.depth[s] = hit.depth;
         hits_.triangle[s] = triangle_.triangle;
+        changed_ |= std::uint64_t{1} << (job / slots_);
+    }
+
+    // Of the blocks that show something else than at the last call.
+    void update_occluders() {
+        for (std::uint64_t left = changed_; left != 0; left &= left - 1) update_block(std::countr_zero(left));
+        if (changed_ != 0) occluders_.finish();
+        changed_ = 0;
+    }
+
+    void update_block(int block) {
+        const int x = block % kCellBlocks * kBlockSize + left_, y = block / kCellBlocks * kBlockSize + top_;
+        const Tile& tile = work_.tile;
+        float farthest[Occluders::kTimes] = {};
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const int px = x + lane % kBlockSize, py = y + lane / kBlockSize;
+            if (px < tile.x0 || px >= tile.x1 || py < tile.y0 || py >= tile.y1) continue;
+            for (int slot = 0; slot < slots_; ++slot) {
+                const std::size_t job = static_cast<std::size_t>(block) * slots_ + slot;
+                float& depth = farthest[Occluders::time_of(vectors_[job].t[lane])];
+                depth = std::max(depth, hits_.depth[job * kLanes + lane]);
+            }
+        }
+        for (int time = 0; time < Occluders::kTimes; ++time)
+            occluders_.set(block % kCellBlocks, kCellBlocks - 1 - block / kCellBlocks, time, farthest[time]);
     }
 
     static void record(CoverMap& map, int px, int py, bool hit) {
@@ -187,13 +230,15 @@ class Walk {
     std::vector<Footprint> buckets_;
     LocalTriangle triangle_;
     Rect pixels_{};  // the triangle's in this tile
+    bool asks_occluders_ = false;
+    Occluders occluders_;
+    std::uint64_t changed_ = 0;  // blocks, since the last update of occluders_
 };
 
 }  // namespace
 
 void cover_with_test(const TileWork& work, const Culling& culling, Hits& hits, CoverCounts& counts) {
-    Walk walk(work, culling, hits, counts);
-    for (const std::uint32_t entry : work.list) walk.cover(work.triangles[entry]);
+    Walk(work, culling, hits, counts).cover_all();
 }
 
 void cover_with_test(const TileWork& work, const CullTest& test, Hits& hits, CoverCounts& counts) {
