@@ -68,9 +68,10 @@ CoverJobs choose_kind(const LocalTriangle& T, Facing facing) {
 }
 
 void cover_triangle(TileState& state, const BinnedTriangle& binned, float nearest, const CullTest& camera_plane_test) {
+    std::uint64_t blocks = blocks_of(binned, state.work.tile) & state.tile_blocks;
+    if (blocks == 0) return;
     const LocalTriangle T = localize(state.work.frame, binned.triangle, binned.segment, state.centre, state.work.scale);
     const float ratio = static_cast<float>(state.work.frame.view.lens.ratio);
-    std::uint64_t blocks = blocks_of(binned, state.work.tile) & state.tile_blocks;
     std::uint64_t masks[kMaxStrata];
     if (T.behind) {
         blocks = blocks_at_camera_plane(T, camera_plane_test, ratio, blocks);
@@ -136,7 +137,8 @@ void cover_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
         state.u[1][s] = d.u1, state.v[1][s] = d.v1, state.t[1][s] = d.t1;
     }
     state.tile_blocks = column_mask((work.tile.x0 - left) / kBlockSize, (work.tile.x1 - 1 - left) / kBlockSize) &
-                        row_mask((work.tile.y0 - top) / kBlockSize, (work.tile.y1 - 1 - top) / kBlockSize);
+                        row_mask((work.tile.y0 - top) / kBlockSize, (work.tile.y1 - 1 - top) / kBlockSize) &
+                        work.tile.blocks;
     std::vector<SampleVector> vectors_of_cell;
     state.samples = work.samples.cell(work.tile.cell_x(), work.tile.cell_y(), vectors_of_cell).data();
     const std::size_t vectors = static_cast<std::size_t>(kBlocksPerCell) * slots;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <pentaprism/render.h>
 
+#include "render/sample_budget.h"
 #include "render/visibility.h"
 #include "resolve/aov_film.h"
 #include "resolve/flow.h"
@@ -54,16 +55,23 @@ class FrameTiles {
 
   private:
     struct Costs {
-        std::atomic<std::int64_t> cover_ns{0}, shade_ns{0}, resolve_ns{0}, tested{0}, covered{0}, shaded{0}, pixels{0};
+        std::atomic<std::int64_t> cover_ns{0}, shade_ns{0}, resolve_ns{0}, tested{0}, covered{0}, shaded{0}, samples{0},
+            pilot_samples{0}, pixels{0};
     };
-    void cover_and_shade(const Tile& tile, Worker& worker);
+    /// Leaves hits and colours in the worker. `map`: may be null.
+    void cover_and_shade(const Tile& tile, const SampleTable& samples, Worker& worker, CoverMap* map);
+    void add_samples(const Tile& tile, const SampleTable& samples, Worker& worker);
+    int delivered_pixels(const Tile& tile) const;
+    CoverMap* tests() { return tests_ ? &*tests_ : nullptr; }
     FrameInfo describe(std::span<const Index> animations, double number) const;
     void make_aovs(double number);
 
     RenderSettings settings_;
     TileFilter filter_;
     Frame frame_;
-    std::optional<SampleTable> samples_;
+    std::optional<SampleBudget> budget_;   // none: all pixels get the same number of samples
+    std::optional<SampleTable> samples_;   // of the budget: those that decide
+    std::vector<SampleTable> for_levels_;  // of the budget's levels
     std::optional<Visibility> visibility_;
     std::optional<ShadingScene> shading_;
     FrameInfo info_;
