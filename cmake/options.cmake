@@ -2,7 +2,7 @@
 add_library(pentaprism_options INTERFACE)
 target_compile_features(pentaprism_options INTERFACE cxx_std_20)
 # A decision must not depend on what the compiler fuses: fused operations are written out (docs/develop/architecture.md).
-target_compile_options(pentaprism_options INTERFACE -ffp-contract=off -Wall -Wextra)
+target_compile_options(pentaprism_options INTERFACE -ffp-contract=off -fno-math-errno -Wall -Wextra)
 if(PENTAPRISM_WERROR)
   target_compile_options(pentaprism_options INTERFACE -Werror)
 endif()

@@ -61,6 +61,8 @@ struct ImageSettings {
     ToneMap tonemap = ToneMap::kAces;        ///< PNG only
     std::optional<std::array<float, 3>> background;  ///< linear; unset: the scene's, else black
     std::vector<Aov> aovs;                           ///< outputs beside the colour, each at most once
+    double flow_step = 1.0;   ///< frames from this one to the earlier and the later moment that kMotion and kOcclusion
+                              ///< lead to, 0 to 1e6; their numbers are pixels for that step
     std::string environment;  ///< instead: "sky", or a .hdr or .exr picture (latitude-longitude, up is up) that lights
                               ///< the scene, too
 };

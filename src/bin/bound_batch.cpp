@@ -16,7 +16,6 @@
 #include <cmath>
 #include <hwy/highway.h>
 
-#include "base/cpu.h"
 #include "bound/facing.h"
 #include "frame/opacity.h"
 
@@ -269,6 +268,8 @@ void bound_all(const Frame& frame, std::uint32_t first, std::uint32_t last, cons
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "base/cpu_dispatch.h"
+
 namespace pentaprism {
 namespace {
 
@@ -315,24 +316,8 @@ void bound_one(const Frame& frame, std::uint32_t triangle, int segment, const Pi
 void bound_triangles(const Frame& frame, std::uint32_t first, std::uint32_t last, const PixelRect& limits,
                      std::vector<BinnedTriangle>& out) {
     if (!frame.view.perspective) return bound_one_by_one(frame, first, last, limits, out);
-    switch (cpu_isa()) {
-#ifndef PENTAPRISM_SCALAR_ONLY
-#if HWY_TARGETS & HWY_AVX3
-        case Isa::kAvx512:
-            return N_AVX3::bound_all(frame, first, last, limits, out);
-#endif
-#if HWY_TARGETS & HWY_AVX2
-        case Isa::kAvx2:
-            return N_AVX2::bound_all(frame, first, last, limits, out);
-#endif
-#if HWY_TARGETS & HWY_NEON
-        case Isa::kNeon:
-            return N_NEON::bound_all(frame, first, last, limits, out);
-#endif
-#endif
-        default:
-            return bound_one_by_one(frame, first, last, limits, out);
-    }
+    PENTAPRISM_RETURN_FOR_CPU(bound_all(frame, first, last, limits, out));
+    return bound_one_by_one(frame, first, last, limits, out);
 }
 
 }  // namespace pentaprism

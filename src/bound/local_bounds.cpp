@@ -59,6 +59,9 @@ struct Vec2 {
 bool operator==(const Vec2& a, const Vec2& b) {
     return a.x == b.x && a.y == b.y;
 }
+double squared_length(const Vec2& v) {
+    return v.x * v.x + v.y * v.y;
+}
 double orient(const Vec2& a, const Vec2& b, const Vec2& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
@@ -74,7 +77,7 @@ std::array<Vec2, 6> hull_of_six(std::array<Vec2, 6> p) {
         if (a == p[0] || b == p[0]) return a == p[0] && !(b == p[0]);
         const double turn = orient(p[0], a, b);
         if (turn != 0) return turn > 0;
-        return std::hypot(a.x - p[0].x, a.y - p[0].y) < std::hypot(b.x - p[0].x, b.y - p[0].y);
+        return squared_length({a.x - p[0].x, a.y - p[0].y}) < squared_length({b.x - p[0].x, b.y - p[0].y});
     };
     constexpr int kNetwork[9][2] = {{1, 2}, {4, 5}, {3, 5}, {3, 4}, {1, 4}, {1, 3}, {2, 5}, {2, 4}, {2, 3}};
     for (const auto& [a, b] : kNetwork)
@@ -175,7 +178,7 @@ HullPolygon hull_polygon(const LocalTriangle& T, const SegmentDomain& d, const P
                  middle_u = 0.5 * (double{d.u0} + d.u1), middle_v = 0.5 * (double{d.v0} + d.v1);
     for (int k = 0; k < 6; ++k) {
         const Vec2 &a = hull[k], &b = hull[(k + 1) % 6];
-        const double length = std::hypot(b.x - a.x, b.y - a.y);
+        const double length = std::sqrt(squared_length({b.x - a.x, b.y - a.y}));
         if (!(length > 0)) continue;
         // Any direction gives a bound, so it may be rounded; then the farthest point in it, over all of the lens.
         const float nx = static_cast<float>((b.y - a.y) / length), ny = static_cast<float>((a.x - b.x) / length);

@@ -15,11 +15,14 @@ struct MovingTriangle {
     vec3 z_q, z_r;
 };
 
+const float kEverywhere = 1e30;
+
 // Corner i is at q + s * d at fraction s of the segment. box: x0, x1, y0, y1, where the exact test looks; of a triangle
-// that does not reach the camera plane everything.
+// that does not reach the camera plane everything, -kEverywhere to kEverywhere. centre: the cell's.
 struct LocalTriangle {
     vec3 qx, qy, qw, qc, qz, dx, dy, dw, dc, dz;
     vec4 box;
+    vec2 centre;
     float segments, segment;
     bool two_sided;
 };
@@ -48,12 +51,23 @@ LocalTriangle localize(MovingTriangle m, vec4 box, vec2 centre, float segments, 
     precise dvec3 local_x = x - centre_x * w, local_y = y - centre_y * w;
     precise dvec3 local_dx = dx - centre_x * dw, local_dy = dy - centre_y * dw;
     return LocalTriangle(vec3(local_x), vec3(local_y), vec3(w), vec3(c), vec3(z), vec3(local_dx), vec3(local_dy), vec3(dw),
-                         vec3(dc), vec3(dz), box, segments, segment, two_sided);
+                         vec3(dc), vec3(dz), box, centre, segments, segment, two_sided);
+}
+
+// Some vertex may be behind the camera plane.
+bool reaches_camera(LocalTriangle T) {
+    return T.box.x != -kEverywhere;
 }
 
 // Closed ranges of the lens and the shutter.
 struct Domain {
     float u0, u1, v0, v1, t0, t1;
+};
+
+// Closed ranges of what a culling test is asked about, in pixels from the cell's middle, y up, and of lens and shutter.
+struct Footprint {
+    float x0, x1, y0, y1;
+    Domain domain;
 };
 
 // Of the lens and of s, the part of the shutter as fractions of the segment.

@@ -89,5 +89,5 @@ bool reaches_camera(MovingTriangle m) {
 
 // LocalTriangle's box: the exact test asks only triangles that reach the camera plane.
 vec4 exact_box(MovingTriangle m, ScreenBox bounds) {
-    return reaches_camera(m) ? vec4(bounds.x0, bounds.x1, bounds.y0, bounds.y1) : vec4(-1e30, 1e30, -1e30, 1e30);
+    return reaches_camera(m) ? vec4(bounds.x0, bounds.x1, bounds.y0, bounds.y1) : vec4(-1.0, 1.0, -1.0, 1.0) * kEverywhere;
 }

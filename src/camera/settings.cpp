@@ -49,6 +49,7 @@ void check(const ImageSettings& image) {
         refuse(fmt::format("--max-spp {}: it is less than --spp {}, the fewest samples of a pixel", image.max_spp,
                            image.spp));
     check_from("--exposure", image.exposure, -100.0, 100.0);
+    check_from("flow step", image.flow_step, 0.0, 1e6);
     if (image.background) {
         for (const float value : *image.background) check_from("--background", value, 0.0, 65504.0);
     }
@@ -334,6 +335,7 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
     json["tonemap"] = name_of(image.tonemap);
     put(json, "background", image.background);
     for (const Aov aov : image.aovs) json["aovs"].push_back(aov_info(aov).name);
+    if (image.flow_step != 1.0) json["flow_step"] = image.flow_step;
     put(json, "environment", file_name(image.environment));
     put(json, "camera", camera.camera);
     put(json, "focal_length_mm", camera.focal_length_mm);

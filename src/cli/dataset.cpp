@@ -25,11 +25,14 @@ using Json = nlohmann::ordered_json;
 // What a data set holds of a frame beside its colours.
 const std::vector<Aov> kAovs{Aov::kDepth, Aov::kMotion, Aov::kCoc, Aov::kObjectId, Aov::kMaterialId, Aov::kCoverage};
 
-const char* const kFolders[] = {"blur", "sharp", "sharp-open", "sharp-close", "depth", "flow", "coc", "ids", "frames"};
+const char* const kFolders[] = {"blur", "sharp",        "sharp-open", "sharp-close", "depth",
+                                "flow", "flow-shutter", "coc",        "ids",         "frames"};
 
 std::string dump(const Json& json) {
     return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
+
+constexpr int kPasses = 4;  // of a frame: blurred and three times sharp
 
 // Keeps the numbers of a frame as well.
 class Collector : public Tee {
@@ -73,7 +76,27 @@ class Collector : public Tee {
     std::size_t pixels_ = 0;
 };
 
-Json camera_json(const FrameInfo& info) {
+// A sensor reads line by line: rows, or columns if it rolls from a side.
+void describe_shutter(const FrameInfo& info, RollingShutter rolling, Json& json) {
+    const double exposure = info.shutter_close - info.shutter_open - info.readout;
+    const char* edge = rolling == RollingShutter::kTop      ? "top"
+                       : rolling == RollingShutter::kBottom ? "bottom"
+                       : rolling == RollingShutter::kLeft   ? "left"
+                       : rolling == RollingShutter::kRight  ? "right"
+                                                            : "none";
+    const bool columns = rolling == RollingShutter::kLeft || rolling == RollingShutter::kRight;
+    const int lines = info.readout > 0.0 ? (columns ? info.width : info.height) : 0;
+    json["shutter_open_s"] = info.shutter_open;
+    json["shutter_close_s"] = info.shutter_close;
+    json["exposure_s"] = exposure;  // of one line
+    json["rolling_shutter"] = lines > 0 ? edge : "none";
+    json["readout_s"] = info.readout;
+    json["readout_lines"] = lines;
+    json["line_s"] = lines > 0 ? info.readout / lines : 0.0;
+    json["exposure_lines"] = lines > 0 ? Json(exposure / (info.readout / lines)) : Json(nullptr);
+}
+
+Json camera_json(const FrameInfo& info, RollingShutter rolling) {
     Json json;
     json["frame"] = info.frame;
     json["camera"] = info.camera;
@@ -86,10 +109,7 @@ Json camera_json(const FrameInfo& info) {
     json["lens_radius_m"] = info.lens_radius;
     json["fstop"] = info.fstop;
     json["focus_distance_m"] = info.focus_distance;
-    json["shutter_open_s"] = info.shutter_open;
-    json["shutter_close_s"] = info.shutter_close;
-    json["exposure_s"] = info.shutter_close - info.shutter_open - info.readout;  // of one row
-    json["readout_s"] = info.readout;
+    describe_shutter(info, rolling, json);
     Json knots = Json::array();
     for (const FrameInfo::Knot& knot : info.knots)
         knots.push_back({{"time_s", knot.time},
@@ -135,6 +155,7 @@ class Dataset : public FrameOutput {
         return folder_ / kind / fmt::format("{:04}{}", frame, suffix);
     }
     void write_numbers(std::int64_t frame, const Collector& collector) const;
+    void render_twins(Renderer& renderer, std::int64_t frame, const FrameInfo& blurred, const Progress& progress) const;
     Json hashes_of(std::int64_t frame) const;
     std::vector<fs::path> whole_frames() const;
     void write_summary(const std::vector<fs::path>& frames) const;
@@ -151,7 +172,6 @@ void Dataset::check_resumable(std::span<const std::int64_t>) const {
 }
 
 RenderStats Dataset::render(Renderer& renderer, std::int64_t frame, const Progress& progress) {
-    constexpr int kPasses = 4;
     const RenderSettings settings = source_.at(frame);
     Collector collector({file("blur", frame, ".exr"), file("blur", frame, ".png")}, settings.image,
                         source_.metadata(settings));
@@ -159,15 +179,9 @@ RenderStats Dataset::render(Renderer& renderer, std::int64_t frame, const Progre
     renderer.render(settings, static_cast<double>(frame), collector, stats, part_of(progress, 0, kPasses));
     collector.finish();
     write_numbers(frame, collector);
+    render_twins(renderer, frame, collector.info, progress);
 
-    const std::pair<const char*, SharpMoment> twins[] = {
-        {"sharp", SharpMoment::kMiddle}, {"sharp-open", SharpMoment::kOpen}, {"sharp-close", SharpMoment::kClose}};
-    int pass = 1;
-    for (const auto& [kind, moment] : twins)
-        render_sharp(renderer, source_, settings, collector.info, moment,
-                     {file(kind, frame, ".exr"), file(kind, frame, ".png")}, part_of(progress, pass++, kPasses));
-
-    Json json = camera_json(collector.info);
+    Json json = camera_json(collector.info, settings.shutter.rolling);
     for (const auto& [name, value] : collector.info.attributes)
         if (name == "objects" || name == "materials") json[name] = Json::parse(value);
     json["software"] = source_.software;
@@ -175,6 +189,32 @@ RenderStats Dataset::render(Renderer& renderer, std::int64_t frame, const Progre
     json["files"] = hashes_of(frame);
     write_text_file(file("frames", frame, ".json"), dump(json));
     return stats;
+}
+
+// The sharp frames, and the flow between the first and the last moment.
+void Dataset::render_twins(Renderer& renderer, std::int64_t frame, const FrameInfo& blurred,
+                           const Progress& progress) const {
+    RenderSettings settings = sharp_settings(source_.at(frame));
+    const FileMetadata about = source_.metadata(settings);
+    settings.image.flow_step = (blurred.shutter_close - blurred.shutter_open) * blurred.fps;
+    settings.camera.offset_before = settings.camera.offset_after = settings.camera.offset;  // within one frame
+    int pass = 1;
+    const auto render = [&](const char* kind, SharpMoment moment) {
+        auto twin = std::make_unique<Collector>(
+            std::vector<fs::path>{file(kind, frame, ".exr"), file(kind, frame, ".png")}, settings.image, about);
+        RenderStats ignored;
+        renderer.render(settings, moment_of(blurred, moment), *twin, ignored, part_of(progress, pass++, kPasses));
+        twin->finish();
+        return twin;
+    };
+    render("sharp", SharpMoment::kMiddle);
+    settings.image.aovs = {Aov::kMotion};
+    const auto open = render("sharp-open", SharpMoment::kOpen), close = render("sharp-close", SharpMoment::kClose);
+    const std::vector<DataPlane> there = open->planes(Aov::kMotion), back = close->planes(Aov::kMotion);
+    const int width = blurred.x1 - blurred.x0, height = blurred.y1 - blurred.y0;
+    const std::vector<DataPlane> planes{there[0], there[1], back[2], back[3]};
+    write_data_exr(file("flow-shutter", frame, ".exr"), width, height, planes, about);
+    write_flo(file("flow-shutter", frame, ".flo"), width, height, there[0], there[1]);
 }
 
 void Dataset::write_numbers(std::int64_t frame, const Collector& collector) const {
@@ -248,6 +288,9 @@ void Dataset::write_summary(const std::vector<fs::path>& frames) const {
     manifest["depth_png"] = "millimetres, 65535 for that and more, 0 where nothing is hit";
     manifest["flow"] =
         "pixels from this frame's mid-shutter to the next one's (.flo), u right, v down; the .exr has both directions";
+    manifest["flow_shutter"] =
+        "pixels from sharp-open to sharp-close, on the pixels of sharp-open (forward, .flo), and from sharp-close to "
+        "sharp-open, on those of sharp-close (backward)";
     manifest["coc"] = "signed radius in pixels, negative in front of the focus plane";
     manifest["hash"] = "XXH3, 128 bits";
     manifest["files"] = files;

@@ -68,9 +68,10 @@ Shard parse_shard(const std::string& text);
 std::vector<std::int64_t> frames_of(const std::vector<std::int64_t>& frames, const Shard& shard);
 
 /// The scene at one moment of the open shutter through a pinhole: the same geometry, camera, places of samples in their
-/// pixels and seed. `blurred` and `info` are those of the blurred frame; the same pixels go to all `files`.
+/// pixels and seed. Without output variables.
+RenderSettings sharp_settings(RenderSettings blurred);
 enum class SharpMoment { kOpen, kMiddle, kClose };
-void render_sharp(Renderer& renderer, const FrameSource& source, const RenderSettings& blurred, const FrameInfo& info,
-                  SharpMoment moment, const std::vector<std::filesystem::path>& files, const Progress& progress);
+/// The number of the frame whose middle that moment is. `info` is that of the blurred frame.
+double moment_of(const FrameInfo& info, SharpMoment moment);
 
 }  // namespace pentaprism::cli

@@ -24,17 +24,6 @@ class RememberingTee : public Tee {
     }
 };
 
-// A pinhole and a shutter that is open for no time, at the moment that is asked for, everywhere.
-RenderSettings sharp_settings(RenderSettings settings) {
-    settings.image.aovs.clear();
-    settings.camera.defocus = false;
-    settings.shutter.shutter = 0.0;
-    settings.shutter.rolling = RollingShutter::kNone;
-    settings.shutter.rolling_duration.reset();
-    settings.shutter.curve.clear();
-    return settings;
-}
-
 class PictureOutput : public FrameOutput {
   public:
     PictureOutput(const FrameSource& source, const fs::path& out, bool sharp)
@@ -62,9 +51,14 @@ class PictureOutput : public FrameOutput {
         renderer.render(settings, static_cast<double>(frame), tee, stats, part_of(progress, 0, passes));
         tee.finish();
         stats.times_ms["write"] = tee.milliseconds();
-        if (sharp_)
-            render_sharp(renderer, source_, settings, tee.info, SharpMoment::kMiddle, {twin_of(file)},
-                         part_of(progress, 1, passes));
+        if (sharp_) {
+            const RenderSettings sharp = sharp_settings(settings);
+            Tee twin({twin_of(file)}, sharp.image, source_.metadata(sharp));
+            RenderStats ignored;
+            renderer.render(sharp, moment_of(tee.info, SharpMoment::kMiddle), twin, ignored,
+                            part_of(progress, 1, passes));
+            twin.finish();
+        }
         return stats;
     }
 
@@ -91,16 +85,22 @@ FileMetadata FrameSource::metadata(const RenderSettings& of) const {
     return metadata;
 }
 
-void render_sharp(Renderer& renderer, const FrameSource& source, const RenderSettings& blurred, const FrameInfo& info,
-                  SharpMoment moment, const std::vector<fs::path>& files, const Progress& progress) {
-    const RenderSettings settings = sharp_settings(blurred);
+// A pinhole, and a shutter that is open for no time, everywhere.
+RenderSettings sharp_settings(RenderSettings settings) {
+    settings.image.aovs.clear();
+    settings.camera.defocus = false;
+    settings.shutter.shutter = 0.0;
+    settings.shutter.rolling = RollingShutter::kNone;
+    settings.shutter.rolling_duration.reset();
+    settings.shutter.curve.clear();
+    return settings;
+}
+
+double moment_of(const FrameInfo& info, SharpMoment moment) {
     const double time = moment == SharpMoment::kOpen    ? info.shutter_open
                         : moment == SharpMoment::kClose ? info.shutter_close
                                                         : 0.5 * (info.shutter_open + info.shutter_close);
-    Tee tee(files, settings.image, source.metadata(settings));
-    RenderStats stats;
-    renderer.render(settings, time * settings.animation.fps, tee, stats, progress);
-    tee.finish();
+    return time * info.fps;
 }
 
 std::unique_ptr<FrameOutput> make_picture_output(const FrameSource& source, const fs::path& out, bool sharp) {

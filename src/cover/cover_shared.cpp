@@ -18,7 +18,6 @@
 #include <cmath>
 #include <hwy/highway.h>
 
-#include "base/cpu.h"
 #include "cover/cover.h"
 #include "cover/exact.h"
 #include "cover/front_to_back.h"
@@ -348,27 +347,13 @@ void cover_shared_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "base/cpu_dispatch.h"
+
 namespace pentaprism {
 
 void cover_shared(const TileWork& work, Hits& hits, CoverCounts& counts) {
-    switch (cpu_isa()) {
-#ifndef PENTAPRISM_SCALAR_ONLY
-#if HWY_TARGETS & HWY_AVX3
-        case Isa::kAvx512:
-            return N_AVX3::cover_shared_tile(work, hits, counts);
-#endif
-#if HWY_TARGETS & HWY_AVX2
-        case Isa::kAvx2:
-            return N_AVX2::cover_shared_tile(work, hits, counts);
-#endif
-#if HWY_TARGETS & HWY_NEON
-        case Isa::kNeon:
-            return N_NEON::cover_shared_tile(work, hits, counts);
-#endif
-#endif
-        default:
-            return cover_with_test(work, *find_cull_test("improved-dual-space"), hits, counts);
-    }
+    PENTAPRISM_RETURN_FOR_CPU(cover_shared_tile(work, hits, counts));
+    return cover_with_test(work, *find_cull_test("improved-dual-space"), hits, counts);
 }
 
 }  // namespace pentaprism

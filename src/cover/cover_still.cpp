@@ -19,7 +19,6 @@
 #include <cmath>
 #include <hwy/highway.h>
 
-#include "base/cpu.h"
 #include "cover/cover.h"
 #include "cover/front_to_back.h"
 
@@ -74,20 +73,6 @@ void update_tile_farthest(StillTile& tile) {
     for (int pixel = 0; pixel < StillTile::kPixels; pixel += kWidth)
         farthest = hn::Max(farthest, hn::Load(f, &tile.farthest[pixel]));
     tile.tile_farthest = hn::GetLane(hn::MaxOfLanes(f, farthest));
-}
-
-// Sorted by depth, triangles lie anywhere in memory.
-HWY_INLINE void fetch_ahead(const TileWork& work, const std::vector<std::uint32_t>& order, std::size_t i) {
-    constexpr std::size_t kAhead = 8;
-    const auto binned = [&](std::size_t steps) -> const BinnedTriangle& {
-        return work.triangles[order[std::min(i + steps * kAhead, order.size() - 1)]];
-    };
-    const Frame& frame = work.frame;
-    hwy::Prefetch(&binned(3));
-    hwy::Prefetch(&frame.corners[3 * std::size_t{binned(2).triangle}]);
-    hwy::Prefetch(&frame.part_of[binned(2).triangle]);
-    const std::uint32_t* corners = &frame.corners[3 * std::size_t{binned(1).triangle}];
-    for (int corner = 0; corner < 3; ++corner) hwy::Prefetch(&frame.points[corners[corner]]);
 }
 
 void cover_front_to_back(StillTile& tile) {
@@ -174,27 +159,13 @@ HWY_AFTER_NAMESPACE();
 #endif  // HWY_SCALAR
 
 #if HWY_ONCE
+#include "base/cpu_dispatch.h"
+
 namespace pentaprism {
 
 void cover_still(const TileWork& work, Hits& hits, CoverCounts& counts) {
-    switch (cpu_isa()) {
-#ifndef PENTAPRISM_SCALAR_ONLY
-#if HWY_TARGETS & HWY_AVX3
-        case Isa::kAvx512:
-            return N_AVX3::cover_still_tile(work, hits, counts);
-#endif
-#if HWY_TARGETS & HWY_AVX2
-        case Isa::kAvx2:
-            return N_AVX2::cover_still_tile(work, hits, counts);
-#endif
-#if HWY_TARGETS & HWY_NEON
-        case Isa::kNeon:
-            return N_NEON::cover_still_tile(work, hits, counts);
-#endif
-#endif
-        default:
-            return cover_with_test(work, *find_cull_test("improved-dual-space"), hits, counts);
-    }
+    PENTAPRISM_RETURN_FOR_CPU(cover_still_tile(work, hits, counts));
+    return cover_with_test(work, *find_cull_test("improved-dual-space"), hits, counts);
 }
 
 }  // namespace pentaprism

@@ -1,8 +1,9 @@
 // The fast path of the coverage stage: sixteen samples at a time, the same decisions as cover/exact.cpp bit for bit.
 //
 // The tile's triangles are walked roughly front to back, so that what is hidden is refused early; equal depths go to
-// the lower triangle whatever the order. For each triangle:
-//   1. half-planes that hold all that it covers (half_planes-inl.h);
+// the lower triangle whatever the order. Sixteen at a time:
+//   1. with triangles in the lanes: shear, and half-planes that hold all that they cover (blur_batch-inl.h).
+// For each:
 //   2. over each stratum of (u, v, t) they give the 4x4-pixel blocks in which its samples can hit; the vectors (block,
 //      slot) of these whose farthest depth so far is beyond the triangle form a work list (work_list-inl.h);
 //   3. a pass over the list keeps vectors with samples inside the edges' half-planes, without branching on it;
@@ -19,9 +20,11 @@
 #include <cmath>
 #include <hwy/highway.h>
 
-#include "base/cpu.h"
 #include "cover/cover.h"
 #include "cover/front_to_back.h"
+
+#if HWY_TARGET != HWY_SCALAR  // which takes cover_with_test()
+#include "cover/blur_batch-inl.h"
 #include "cover/half_planes-inl.h"
 #include "cover/lanes-inl.h"
 #include "cover/vector_test-inl.h"
@@ -37,7 +40,7 @@ namespace {
 constexpr float kLargeTriangle = 6.0f;
 constexpr int kWorthRefining = 6;
 
-using CoverJobs = void (*)(TileState&, const LocalTriangle&, const HalfPlanes*, std::size_t);
+using CoverJobs = void (*)(TileState&, const LocalTriangle&, const HalfPlanes*, int, std::size_t);
 
 template <Moves kMoves, bool kDefocus>
 CoverJobs choose(Seen seen) {
@@ -52,45 +55,52 @@ CoverJobs choose(Seen seen) {
     return cover_jobs<Kind<kMoves, kDefocus, Seen::kBoth>>;
 }
 
-CoverJobs choose_kind(const LocalTriangle& T, Facing facing) {
-    bool motion = T.segments > 1.0f, defocus = false;
-    for (int k = 0; k < 3; ++k) {
-        motion = motion || T.dx[k] != 0 || T.dy[k] != 0 || T.dw[k] != 0 || T.dc[k] != 0 || T.dz[k] != 0;
-        defocus = defocus || T.qc[k] != 0 || T.dc[k] != 0;
-    }
-    const Seen seen = !T.two_sided || facing == Facing::kFront ? Seen::kFront
-                      : facing == Facing::kBack                ? Seen::kBack
-                                                               : Seen::kBoth;
+CoverJobs choose_kind(const BlurBatch& batch, int k) {
+    const bool motion = batch.moves[k] != 0, defocus = batch.defocus[k] != 0;
+    const Facing facing = batch.binned[k]->facing;
+    const Seen seen = !batch.part[k]->two_sided || facing == Facing::kFront ? Seen::kFront
+                      : facing == Facing::kBack                             ? Seen::kBack
+                                                                            : Seen::kBoth;
     if (!motion) return defocus ? choose<Moves::kNot, true>(seen) : choose<Moves::kNot, false>(seen);
-    if (T.segments > 1.0f)
+    if (batch.segments[k] > 1.0f)
         return defocus ? choose<Moves::kInPieces, true>(seen) : choose<Moves::kInPieces, false>(seen);
     return defocus ? choose<Moves::kStraight, true>(seen) : choose<Moves::kStraight, false>(seen);
 }
 
-void cover_triangle(TileState& state, const BinnedTriangle& binned, float nearest, const CullTest& camera_plane_test) {
-    std::uint64_t blocks = blocks_of(binned, state.work.tile) & state.tile_blocks;
-    if (blocks == 0) return;
+void cover_at_camera_plane(TileState& state, const BlurBatch& batch, int k, const CullTest& camera_plane_test) {
+    const BinnedTriangle& binned = *batch.binned[k];
     const LocalTriangle T = localize(state.work.frame, binned.triangle, binned.segment, state.centre, state.work.scale);
-    const float ratio = static_cast<float>(state.work.frame.view.lens.ratio);
-    std::uint64_t masks[kMaxStrata];
-    if (T.behind) {
-        blocks = blocks_at_camera_plane(T, camera_plane_test, ratio, blocks);
-        std::fill(masks, masks + state.stratum_count, ~0ull);
-        const std::size_t jobs = list_jobs(state, masks, blocks, nearest);
-        choose_kind(T, binned.facing)(state, T, nullptr, jobs);
-        return;
-    }
-    const HalfPlanes H = half_planes(T, ratio);
-    StratumLimits limits;
+    const std::uint64_t blocks =
+        blocks_at_camera_plane(T, camera_plane_test, static_cast<float>(state.work.frame.view.lens.ratio),
+                               blocks_of(binned, state.work.tile) & state.tile_blocks);
+    std::fill(state.masks, state.masks + state.stratum_count, ~0ull);
+    const std::size_t jobs = list_jobs(state, state.masks, blocks, batch.nearest[k]);
+    choose_kind(batch, k)(state, T, nullptr, k, jobs);
+}
+
+void cover_triangle(TileState& state, const BlurBatch& batch, int k) {
+    const std::uint64_t blocks = blocks_of(*batch.binned[k], state.work.tile) & state.tile_blocks;
+    const HalfPlanes& H = batch.planes;
+    const StratumLimits limits(state, batch.segment[k], batch.segments[k]);
+    boxes_of_strata(state, H, k, limits, state.masks);
     // Many blocks in many strata: worth a closer look.
     const int block_count = std::popcount(blocks);
-    const bool refine = (block_count >= kWorthRefining && H.smaller_side > kLargeTriangle) ||
-                        (block_count > 1 && state.stratum_count == 1);
-    bound_strata(state, T, H, refine ? HalfPlanes::kCount : HalfPlanes::kEdges, limits);
-    boxes_of_strata(state, limits, masks);
-    if (refine) refuse_blocks_by_edges(state, H, limits, masks);
-    const std::size_t jobs = list_jobs(state, masks, blocks, nearest);
-    if (jobs != 0) choose_kind(T, binned.facing)(state, T, &H, jobs);
+    if ((block_count >= kWorthRefining && H.smaller_side[k] > kLargeTriangle) ||
+        (block_count > 1 && state.stratum_count == 1))
+        refuse_blocks_by_edges(state, H, k, limits, BlockGroups(blocks), state.masks);
+    const std::size_t jobs = list_jobs(state, state.masks, blocks, batch.nearest[k]);
+    if (jobs != 0) choose_kind(batch, k)(state, local_triangle(batch, k, state.work.frame), &H, k, jobs);
+}
+
+void cover_batch(TileState& state, BlurBatch& batch, const CullTest& camera_plane_test) {
+    prepare(batch, state.work, state.centre);
+    for (int k = 0; k < batch.count; ++k) {
+        if (batch.behind[k] != 0)
+            cover_at_camera_plane(state, batch, k, camera_plane_test);
+        else
+            cover_triangle(state, batch, k);
+    }
+    batch.count = 0;
 }
 
 // Farthest depth that any of the tile's samples still shows.
@@ -104,19 +114,22 @@ void update_tile_farthest(TileState& state) {
 }
 
 void cover_front_to_back(TileState& state) {
-    constexpr int kBetweenUpdates = 16;
     const CullTest& camera_plane_test = *find_cull_test("improved-dual-space");
-    int until_update = kBetweenUpdates;
-    for (const std::uint32_t entry : front_to_back(state.work)) {
-        const BinnedTriangle& binned = state.work.triangles[entry];
+    BlurBatch batch{};
+    const std::vector<std::uint32_t> order = front_to_back(state.work);
+    const bool some_blocks = state.work.tile.blocks != ~std::uint64_t{0};
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        fetch_ahead(state.work, order, i);
+        const BinnedTriangle& binned = state.work.triangles[order[i]];
         const float nearest = nearest_depth(state.work, binned);
-        if (nearest > state.tile_farthest) return;  // so are all that follow
-        cover_triangle(state, binned, nearest, camera_plane_test);
-        if (--until_update == 0) {
-            update_tile_farthest(state);
-            until_update = kBetweenUpdates;
-        }
+        if (nearest > state.tile_farthest) break;  // so are all that follow
+        if (some_blocks && (blocks_of(binned, state.work.tile) & state.tile_blocks) == 0) continue;
+        append(batch, state.work.frame, binned, nearest);
+        if (batch.count < BlurBatch::kSize) continue;
+        cover_batch(state, batch, camera_plane_test);
+        update_tile_farthest(state);
     }
+    if (batch.count != 0) cover_batch(state, batch, camera_plane_test);
 }
 
 }  // namespace
@@ -126,7 +139,6 @@ void cover_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
     const int slots = work.samples.slots();
     const int left = work.tile.cell_x() * kCellSize, top = work.tile.cell_y() * kCellSize;
     state.slots = slots;
-    state.strata = work.samples.strata(work.tile.cell_x(), work.tile.cell_y());
     std::vector<Domain> domains_of_cell;
     const std::span<const Domain> domains =
         work.samples.domains(work.tile.cell_x(), work.tile.cell_y(), domains_of_cell);
@@ -145,7 +157,7 @@ void cover_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
     state.farthest.resize(vectors);
     for (std::size_t job = 0; job < vectors; ++job)  // nothing is hidden in the tile, everything beyond it
         state.farthest[job] = state.tile_blocks >> (job % kBlocksPerCell) & 1 ? INFINITY : -INFINITY;
-    state.jobs.resize(vectors + 8);  // list_jobs writes up to 7 beyond
+    state.jobs.resize(vectors + kLanes);  // list_jobs writes up to sixteen beyond
     for (int b = 0; b < kBlocksPerCell; ++b) {
         state.column_of_block[b] = static_cast<float>(b % kCellBlocks);
         state.row_of_block[b] = static_cast<float>(b / kCellBlocks);
@@ -171,29 +183,16 @@ void cover_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
 }  // namespace HWY_NAMESPACE
 }  // namespace pentaprism
 HWY_AFTER_NAMESPACE();
+#endif  // HWY_SCALAR
 
 #if HWY_ONCE
+#include "base/cpu_dispatch.h"
+
 namespace pentaprism {
 
 void cover_vectors(const TileWork& work, Hits& hits, CoverCounts& counts) {
-    switch (cpu_isa()) {
-#ifndef PENTAPRISM_SCALAR_ONLY
-#if HWY_TARGETS & HWY_AVX3
-        case Isa::kAvx512:
-            return N_AVX3::cover_tile(work, hits, counts);
-#endif
-#if HWY_TARGETS & HWY_AVX2
-        case Isa::kAvx2:
-            return N_AVX2::cover_tile(work, hits, counts);
-#endif
-#if HWY_TARGETS & HWY_NEON
-        case Isa::kNeon:
-            return N_NEON::cover_tile(work, hits, counts);
-#endif
-#endif
-        default:
-            return cover_with_test(work, *find_cull_test("improved-dual-space"), hits, counts);
-    }
+    PENTAPRISM_RETURN_FOR_CPU(cover_tile(work, hits, counts));
+    return cover_with_test(work, *find_cull_test("improved-dual-space"), hits, counts);
 }
 
 }  // namespace pentaprism

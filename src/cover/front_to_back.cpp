@@ -1,7 +1,9 @@
 #include "cover/front_to_back.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <hwy/cache_control.h>
 #include <hwy/contrib/sort/vqsort.h>
 
 namespace pentaprism {
@@ -27,6 +29,26 @@ std::vector<std::uint32_t> front_to_back(const TileWork& work) {
     order.reserve(keys.size());
     for (const std::uint64_t key : keys) order.push_back(static_cast<std::uint32_t>(key));
     return order;
+}
+
+void fetch_ahead(const TileWork& work, const std::vector<std::uint32_t>& order, std::size_t i) {
+    constexpr std::size_t kAhead = 8;
+    const auto binned = [&](std::size_t steps) -> const BinnedTriangle& {
+        return work.triangles[order[std::min(i + steps * kAhead, order.size() - 1)]];
+    };
+    const Frame& frame = work.frame;
+    hwy::Prefetch(&binned(3));
+    hwy::Prefetch(&frame.corners[3 * std::size_t{binned(2).triangle}]);
+    hwy::Prefetch(&frame.part_of[binned(2).triangle]);
+    const std::uint32_t triangle = binned(1).triangle, *corners = &frame.corners[3 * std::size_t{triangle}];
+    const Part& part = frame.parts[frame.part_of[triangle]];
+    if (!part.moves) {
+        for (int corner = 0; corner < 3; ++corner) hwy::Prefetch(&frame.points[corners[corner]]);
+        return;
+    }
+    for (int corner = 0; corner < 3; ++corner)
+        for (int end = 0; end < 2; ++end)
+            hwy::Prefetch(&frame.points[corners[corner] + (binned(1).segment + end) * std::size_t{part.vertex_count}]);
 }
 
 }  // namespace pentaprism

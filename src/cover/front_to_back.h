@@ -14,4 +14,8 @@ float nearest_depth(const TileWork& work, const BinnedTriangle& triangle);
 /// The tile's triangles by their nearest w: indices into TileWork::triangles.
 std::vector<std::uint32_t> front_to_back(const TileWork& work);
 
+/// Before entry i of the order is read: prefetches what later entries need. Sorted by depth, triangles lie anywhere in
+/// memory.
+void fetch_ahead(const TileWork& work, const std::vector<std::uint32_t>& order, std::size_t i);
+
 }  // namespace pentaprism

@@ -11,8 +11,6 @@
 #include <cmath>
 #include <hwy/highway.h>
 
-#include "base/cpu.h"
-
 HWY_BEFORE_NAMESPACE();
 namespace pentaprism {
 namespace HWY_NAMESPACE {
@@ -142,11 +140,17 @@ std::int64_t find_lanes(const LocalTriangle& T, const SampleVector* samples, con
     return tested;
 }
 
+MicropolygonKernels kernels() {
+    return {strata_boxes, find_lanes};
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace pentaprism
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "base/cpu_dispatch.h"
+
 namespace pentaprism {
 namespace {
 
@@ -176,24 +180,8 @@ std::int64_t lanes_in_box(const LocalTriangle& T, const SampleVector* samples, c
 }  // namespace
 
 MicropolygonKernels micropolygon_kernels() {
-    switch (cpu_isa()) {
-#ifndef PENTAPRISM_SCALAR_ONLY
-#if HWY_TARGETS & HWY_AVX3
-        case Isa::kAvx512:
-            return {N_AVX3::strata_boxes, N_AVX3::find_lanes};
-#endif
-#if HWY_TARGETS & HWY_AVX2
-        case Isa::kAvx2:
-            return {N_AVX2::strata_boxes, N_AVX2::find_lanes};
-#endif
-#if HWY_TARGETS & HWY_NEON
-        case Isa::kNeon:
-            return {N_NEON::strata_boxes, N_NEON::find_lanes};
-#endif
-#endif
-        default:
-            return {whole_boxes, lanes_in_box};
-    }
+    PENTAPRISM_RETURN_FOR_CPU(kernels());
+    return {whole_boxes, lanes_in_box};
 }
 
 }  // namespace pentaprism

@@ -14,6 +14,7 @@
 #include <cmath>
 
 #include "cover/lanes-inl.h"
+#include "cover/shear-inl.h"
 #include "frame/opacity.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -54,18 +55,6 @@ inline void append(StillBatch& batch, const TileWork& work, const BinnedTriangle
     }
 }
 
-// x - centre * w in double, rounded once: what localize() does.
-HWY_INLINE Vec sheared(F f, Vec x, Vec w, float centre) {
-    const hn::Repartition<double, F> d;
-    const hn::Rebind<float, decltype(d)> half;
-    const auto shear = [&](auto x_half, auto w_half) HWY_ATTR {
-        const auto offset = hn::Mul(hn::Set(d, static_cast<double>(centre)), hn::PromoteTo(d, w_half));
-        return hn::DemoteTo(half, hn::Sub(hn::PromoteTo(d, x_half), offset));
-    };
-    const auto lower = shear(hn::LowerHalf(half, x), hn::LowerHalf(half, w));
-    return hn::Combine(f, shear(hn::UpperHalf(half, x), hn::UpperHalf(half, w)), lower);
-}
-
 // The half-planes as in half_planes-inl.h, whose reasons and slacks hold, where nothing moves: a covered sample has
 // n.h <= n.P of the farthest corner. n.h over a pixel is least at the corner that lies deepest inside.
 HWY_INLINE void make_edges(F f, StillBatch& batch, int lane, const Vec x[3], const Vec y[3], const Vec w[3],
@@ -103,12 +92,6 @@ HWY_INLINE void make_edges(F f, StillBatch& batch, int lane, const Vec x[3], con
         hn::Store(hn::IfThenElse(behind, zero, away_x), f, batch.nx[k] + lane);
         hn::Store(hn::IfThenElse(behind, zero, away_y), f, batch.ny[k] + lane);
     }
-}
-
-// The least float that is no smaller.
-inline float rounded_up(double value) {
-    const float rounded = static_cast<float>(value);
-    return rounded < value ? std::nextafter(rounded, INFINITY) : rounded;
 }
 
 // Fills in all that append() left open.
@@ -168,23 +151,6 @@ inline std::uint32_t lanes_in(const CellRect& rect, int column, int row) {
 // A triangle of the batch and a pixel of the cell (kLanes * block + lane).
 constexpr std::uint32_t pixel_job(int k, int pixel) {
     return static_cast<std::uint32_t>(k << 16 | pixel);
-}
-
-// Writes first + lane for the lanes whose bit is set; returns how many. Writes up to sixteen.
-HWY_INLINE std::size_t write_lanes(std::uint32_t first, std::uint32_t lanes, std::uint32_t* HWY_RESTRICT jobs) {
-    if constexpr (kWidth == kLanes) {
-        const U u;
-        const auto bits = static_cast<std::uint64_t>(lanes);
-        const auto mask = hn::LoadMaskBits(u, reinterpret_cast<const std::uint8_t*>(&bits));
-        hn::StoreU(hn::Compress(hn::Add(hn::Iota(u, 0), hn::Set(u, first)), mask), u, jobs);
-    } else {  // a vector's Compress is slow elsewhere: eight at a time, wanted or not
-        std::uint32_t m = lanes;
-        for (int i = 0; i < 8; ++i, m &= m - 1) jobs[i] = first + static_cast<std::uint32_t>(std::countr_zero(m));
-        if (m != 0)
-            for (int i = 8; i < kLanes; ++i, m &= m - 1)
-                jobs[i] = first + static_cast<std::uint32_t>(std::countr_zero(m));
-    }
-    return static_cast<std::size_t>(std::popcount(lanes));
 }
 
 // Writes the pixels of triangle k that lie within its half-planes and rectangle and show something no nearer than it;

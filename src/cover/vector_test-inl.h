@@ -27,19 +27,20 @@ struct Kind {
     static constexpr Seen kSeen = kSeenT;
 };
 
-// Pass 1: keeps the vectors of the work list that have a sample inside the half-planes of all three edges.
+// Pass 1: keeps the vectors of the work list that have a sample inside the half-planes of all three edges of a triangle
+// of the batch.
 template <bool kMotion, bool kDefocus>
-std::size_t keep_within_edges(TileState& state, const HalfPlanes& H, std::size_t job_count) {
+std::size_t keep_within_edges(TileState& state, const HalfPlanes& H, int triangle, std::size_t job_count) {
     const F f;
     constexpr int kEdge = HalfPlanes::kEdges;
     Vec nx[3], ny[3], ku[3], kv[3], e[3], limit[3];
     for (int k = 0; k < 3; ++k) {
-        nx[k] = hn::Set(f, H.nx[kEdge + k]);
-        ny[k] = hn::Set(f, H.ny[kEdge + k]);
-        ku[k] = hn::Set(f, H.ku[kEdge + k]);
-        kv[k] = hn::Set(f, H.kv[kEdge + k]);
-        e[k] = hn::Set(f, H.e[kEdge + k]);
-        limit[k] = hn::Set(f, H.f[kEdge + k]);
+        nx[k] = hn::Set(f, H.nx[kEdge + k][triangle]);
+        ny[k] = hn::Set(f, H.ny[kEdge + k][triangle]);
+        ku[k] = hn::Set(f, H.ku[kEdge + k][triangle]);
+        kv[k] = hn::Set(f, H.kv[kEdge + k][triangle]);
+        e[k] = hn::Set(f, H.e[kEdge + k][triangle]);
+        limit[k] = hn::Set(f, H.f[kEdge + k][triangle]);
     }
     Job* HWY_RESTRICT jobs = state.jobs.data();
     std::size_t count = 0;
@@ -257,8 +258,8 @@ void write_hits(TileState& state, const LocalTriangle& T, std::size_t count) {
 }
 
 template <class K>
-void cover_jobs(TileState& state, const LocalTriangle& T, const HalfPlanes* H, std::size_t jobs) {
-    if (H != nullptr) jobs = keep_within_edges<K::kMotion, K::kDefocus>(state, *H, jobs);
+void cover_jobs(TileState& state, const LocalTriangle& T, const HalfPlanes* H, int k, std::size_t jobs) {
+    if (H != nullptr) jobs = keep_within_edges<K::kMotion, K::kDefocus>(state, *H, k, jobs);
     write_hits<K>(state, T, jobs);
 }
 

@@ -9,7 +9,6 @@
 #endif
 
 #include <algorithm>
-#include <array>
 #include <bit>
 
 #include "cover/half_planes-inl.h"
@@ -27,15 +26,6 @@ constexpr std::uint64_t row_mask(int row0, int row1) {
     return row0 > row1 ? 0 : (~0ull >> (8 * (7 - row1))) & (~0ull << (8 * row0));
 }
 
-// The same by 8 * first + last; 64: nothing.
-using MaskTable = std::array<std::uint64_t, 65>;
-constexpr MaskTable mask_table(std::uint64_t (*mask)(int, int)) {
-    MaskTable table{};
-    for (int i = 0; i < 64; ++i) table[i] = mask(i / 8, i % 8);
-    return table;
-}
-constexpr MaskTable kColumns = mask_table(column_mask), kRows = mask_table(row_mask);
-
 // Blocks of the cell that the pixel rectangle touches.
 inline std::uint64_t blocks_of(const BinnedTriangle& binned, const Tile& tile) {
     const int left = tile.cell_x() * kCellSize, top = tile.cell_y() * kCellSize;
@@ -51,110 +41,161 @@ inline float block_y(int block) {
     return static_cast<float>(kCellSize / 2 - block / kCellBlocks * kBlockSize);
 }
 
-// The half-planes over strata: for a sample of stratum s that is hit, n.h <= limit[plane][s].
-struct StratumLimits {
-    HWY_ALIGN float limit[HalfPlanes::kCount][kMaxStrata];
-    HWY_ALIGN std::int32_t outside[kMaxStrata];        // -1: has no time in this segment
-    int groups[kMaxStrata / kWidth], group_count = 0;  // vectors of strata (the first of each) some of which have
-};
-
-HWY_INLINE void bound_strata(const TileState& state, const LocalTriangle& T, const HalfPlanes& H, int planes,
-                             StratumLimits& out) {
-    const F f;
-    const I i;
-    constexpr float kWiden = 1e-6f;  // the segment's ends are rounded
-    const Vec begin = hn::Set(f, T.segment / T.segments - kWiden),
-              end = hn::Set(f, (T.segment + 1) / T.segments + kWiden);
-    HWY_ALIGN float t[2][kMaxStrata];  // of the strata, within the segment
-    for (int first = 0; first < state.stratum_count; first += kWidth) {
-        const Vec t0 = hn::Max(hn::Load(f, state.t[0] + first), begin);
-        const Vec t1 = hn::Min(hn::Load(f, state.t[1] + first), end);
-        const Mask outside = hn::Gt(t0, t1);
-        if (hn::AllTrue(f, outside)) continue;
-        out.groups[out.group_count++] = first;
-        hn::Store(t0, f, t[0] + first);
-        hn::Store(t1, f, t[1] + first);
-        hn::Store(hn::BitCast(i, hn::VecFromMask(f, outside)), i, out.outside + first);
-    }
-    for (int p = 0; p < planes; ++p) {
-        // Signs are unpredictable: they choose an array, not a path.
-        const float *const te = t[H.e[p] > 0], *const tu = state.u[H.ku[p] > 0], *const tv = state.v[H.kv[p] > 0];
-        const Vec e = hn::Set(f, H.e[p]), ku = hn::Set(f, H.ku[p]), kv = hn::Set(f, H.kv[p]), c = hn::Set(f, H.f[p]);
-        for (int g = 0; g < out.group_count; ++g) {
-            const int first = out.groups[g];
-            const Vec limit = hn::MulAdd(ku, hn::Load(f, tu + first), hn::MulAdd(e, hn::Load(f, te + first), c));
-            hn::Store(hn::MulAdd(kv, hn::Load(f, tv + first), limit), f, out.limit[p] + first);
+// Largest value of affine functions of (u, v, t) over strata: what the half-planes of triangle k allow.
+class StratumLimits {
+  public:
+    // `segment`, `segments`: the strata's times are cut to that part of the shutter.
+    HWY_INLINE StratumLimits(const TileState& state, float segment, float segments) : state_(state) {
+        if (segments == 1.0f) {
+            t_[0] = state.t[0], t_[1] = state.t[1];
+            for (int first = 0; first < state.stratum_count; first += kWidth) groups_[group_count_++] = first;
+            return;
+        }
+        const F f;
+        constexpr float kWiden = 1e-6f;  // the segment's ends are rounded
+        const Vec begin = hn::Set(f, segment / segments - kWiden), end = hn::Set(f, (segment + 1) / segments + kWiden);
+        t_[0] = cut_[0], t_[1] = cut_[1];
+        for (int first = 0; first < state.stratum_count; first += kWidth) {
+            const Vec t0 = hn::Max(hn::Load(f, state.t[0] + first), begin);
+            const Vec t1 = hn::Min(hn::Load(f, state.t[1] + first), end);
+            if (hn::AllTrue(f, hn::Gt(t0, t1))) continue;
+            groups_[group_count_++] = first;
+            hn::Store(t0, f, cut_[0] + first);
+            hn::Store(t1, f, cut_[1] + first);
         }
     }
+
+    // Vectors of strata (the first of each) some of which have time in the segment.
+    int group_count() const { return group_count_; }
+    int group(int g) const { return groups_[g]; }
+    // Lanes that have.
+    HWY_INLINE Mask in_time(int first) const {
+        const F f;
+        return hn::Le(hn::Load(f, t_[0] + first), hn::Load(f, t_[1] + first));
+    }
+
+    // Signs are unpredictable: they choose an array, not a path.
+    struct Plane {
+        const float *t, *u, *v;
+        float e, ku, kv, f;
+    };
+    HWY_INLINE Plane plane(const HalfPlanes& H, int p, int k) const {
+        const float e = H.e[p][k], ku = H.ku[p][k], kv = H.kv[p][k];
+        return {t_[e > 0], state_.u[ku > 0], state_.v[kv > 0], e, ku, kv, H.f[p][k]};
+    }
+    // Of a plane whose direction is that of x or of y, which leaves one lens coordinate out.
+    HWY_INLINE static Vec along_x(const Plane& P, int first) {
+        const F f;
+        const Vec limit = hn::MulAdd(hn::Set(f, P.e), hn::Load(f, P.t + first), hn::Set(f, P.f));
+        return hn::MulAdd(hn::Set(f, P.ku), hn::Load(f, P.u + first), limit);
+    }
+    HWY_INLINE static Vec along_y(const Plane& P, int first) {
+        const F f;
+        const Vec limit = hn::MulAdd(hn::Set(f, P.e), hn::Load(f, P.t + first), hn::Set(f, P.f));
+        return hn::MulAdd(hn::Set(f, P.kv), hn::Load(f, P.v + first), limit);
+    }
+    HWY_INLINE static Vec in_any_direction(const Plane& P, int first) {
+        const F f;
+        return hn::MulAdd(hn::Set(f, P.kv), hn::Load(f, P.v + first), along_x(P, first));
+    }
+
+  private:
+    const TileState& state_;
+    const float* t_[2];
+    int groups_[kMaxStrata / kWidth], group_count_ = 0;
+    HWY_ALIGN float cut_[2][kMaxStrata];
+};
+
+// Masks of the blocks in the box of each stratum: sixteen strata from corners of boxes in blocks, each 0..7. Empty
+// where `keep` is false.
+HWY_INLINE void store_block_masks(Vec column0, Vec column1, Vec row0, Vec row1, Mask keep, std::uint64_t* masks) {
+    const U u;
+    const hn::Half<U> half;
+    const U64 d;
+    const auto integer = [&](Vec v) HWY_ATTR { return hn::BitCast(u, hn::ConvertTo(I(), v)); };
+    const auto seven = hn::Set(u, kCellBlocks - 1);
+    // One bit for each column, in each of four rows.
+    const auto from = hn::Shl(hn::Set(u, 0xff), integer(column0)),
+               to = hn::Shr(hn::Set(u, 0xff), hn::Sub(seven, integer(column1)));
+    const auto columns =
+        hn::IfThenElseZero(hn::RebindMask(u, keep), hn::Mul(hn::And(from, to), hn::Set(u, 0x01010101)));
+    const auto above = hn::ShiftLeft<3>(integer(row0)), below = hn::ShiftLeft<3>(hn::Sub(seven, integer(row1)));
+    const auto store = [&](auto c, auto a, auto b, std::uint64_t* to_masks) HWY_ATTR {
+        const Vec64 all = hn::Set(d, ~std::uint64_t{0}), four_rows = hn::PromoteTo(d, c);
+        const Vec64 rows = hn::And(hn::Shl(all, hn::PromoteTo(d, a)), hn::Shr(all, hn::PromoteTo(d, b)));
+        hn::Store(hn::And(rows, hn::Or(four_rows, hn::ShiftLeft<32>(four_rows))), d, to_masks);
+    };
+    store(hn::LowerHalf(half, columns), hn::LowerHalf(half, above), hn::LowerHalf(half, below), masks);
+    store(hn::UpperHalf(half, columns), hn::UpperHalf(half, above), hn::UpperHalf(half, below), masks + kWidth64);
 }
 
-// Blocks between left and right, above and below.
-HWY_INLINE void boxes_of_strata(const TileState& state, const StratumLimits& limits, std::uint64_t* masks) {
+// Blocks between left and right, above and below. `masks` as long as kMaxStrata.
+HWY_INLINE void boxes_of_strata(const TileState& state, const HalfPlanes& H, int k, const StratumLimits& limits,
+                                std::uint64_t* masks) {
     const F f;
-    const I i;
-    const Vec half = hn::Set(f, kCellSize / 2), to_blocks = hn::Set(f, 1.0f / kBlockSize);
-    const Vec zero = hn::Zero(f), seven = hn::Set(f, kCellBlocks - 1);
-    HWY_ALIGN std::int32_t columns[kMaxStrata], rows[kMaxStrata];
-    const auto block = [&](Vec v)
-                           HWY_ATTR { return hn::ConvertTo(i, hn::Min(hn::Max(hn::Mul(v, to_blocks), zero), seven)); };
-    for (int g = 0; g < limits.group_count; ++g) {
-        const int first = limits.groups[g];
-        // From the cell's top left corner, y down.
-        const Vec x0 = hn::Sub(half, hn::Load(f, limits.limit[HalfPlanes::kLeft] + first));
-        const Vec x1 = hn::Add(half, hn::Load(f, limits.limit[HalfPlanes::kRight] + first));
-        const Vec y0 = hn::Sub(half, hn::Load(f, limits.limit[HalfPlanes::kAbove] + first));
-        const Vec y1 = hn::Add(half, hn::Load(f, limits.limit[HalfPlanes::kBelow] + first));
+    const StratumLimits::Plane right = limits.plane(H, HalfPlanes::kRight, k),
+                               left = limits.plane(H, HalfPlanes::kLeft, k),
+                               above = limits.plane(H, HalfPlanes::kAbove, k),
+                               below = limits.plane(H, HalfPlanes::kBelow, k);
+    const Vec middle = hn::Set(f, kCellBlocks / 2), per_block = hn::Set(f, 1.0f / kBlockSize), zero = hn::Zero(f);
+    const Vec eight = hn::Set(f, kCellBlocks), seven = hn::Set(f, kCellBlocks - 1);
+    const auto clamped = [&](Vec v) HWY_ATTR { return hn::Min(hn::Max(v, zero), seven); };
+    if (limits.group_count() * kWidth < state.stratum_count) std::fill(masks, masks + state.stratum_count, 0);
+    for (int g = 0; g < limits.group_count(); ++g) {
+        const int first = limits.group(g);
+        // From the cell's top left corner, y down, in blocks (a power of two: nothing is rounded that was not before).
+        const Vec x0 = hn::NegMulAdd(limits.along_x(left, first), per_block, middle);
+        const Vec x1 = hn::MulAdd(limits.along_x(right, first), per_block, middle);
+        const Vec y0 = hn::NegMulAdd(limits.along_y(above, first), per_block, middle);
+        const Vec y1 = hn::MulAdd(limits.along_y(below, first), per_block, middle);
         // Reject before clamping: a clamped bound would keep or lose the cell's last half pixel.
-        const Vec size = hn::Set(f, kCellSize);
-        const Mask within =
-            hn::And(hn::And(hn::Le(x0, size), hn::Ge(x1, zero)), hn::And(hn::Le(y0, size), hn::Ge(y1, zero)));
-        const auto in_time = hn::Eq(hn::Load(i, limits.outside + first), hn::Zero(i));
-        const auto keep = hn::And(hn::RebindMask(i, within), in_time);
-        hn::Store(hn::IfThenElse(keep, hn::Add(hn::ShiftLeft<3>(block(x0)), block(x1)), hn::Set(i, 64)), i,
-                  columns + first);
-        hn::Store(hn::Add(hn::ShiftLeft<3>(block(y0)), block(y1)), i, rows + first);
-    }
-    if (limits.group_count * kWidth < state.stratum_count) std::fill(masks, masks + state.stratum_count, 0);
-    for (int g = 0; g < limits.group_count; ++g) {
-        const int last = std::min(limits.groups[g] + kWidth, state.stratum_count);
-        for (int s = limits.groups[g]; s < last; ++s) masks[s] = kColumns[columns[s]] & kRows[rows[s]];
+        const Mask keep = hn::And(hn::Le(hn::Max(x0, y0), eight), hn::Ge(hn::Min(x1, y1), zero));
+        store_block_masks(clamped(x0), clamped(x1), clamped(y0), clamped(y1), hn::And(keep, limits.in_time(first)),
+                          masks + first);
     }
 }
 
-// For each of the 64 blocks whether a condition that compares sixteen of them at a time holds.
-template <class Condition>
-HWY_INLINE std::uint64_t for_blocks(Condition condition) {
-    const F f;
-    std::uint64_t mask = 0;
-    for (int first = 0; first < kBlocksPerCell; first += kWidth) mask |= bits_of(f, condition(first)) << first;
-    return mask;
-}
+// Groups of kLanes blocks, two rows of a cell, that hold the blocks of a mask: [begin, end).
+struct BlockGroups {
+    explicit BlockGroups(std::uint64_t blocks)
+        : begin(blocks == 0 ? 0 : std::countr_zero(blocks) / kLanes),
+          end(blocks == 0 ? 0 : (63 - std::countl_zero(blocks)) / kLanes + 1) {}
+    int begin, end;
+};
 
-// Blocks beyond an edge, over all of a stratum, are refused: for triangles that fill many blocks.
-HWY_NOINLINE inline void refuse_blocks_by_edges(const TileState& state, const HalfPlanes& H,
-                                                const StratumLimits& limits, std::uint64_t* masks) {
+// Blocks beyond an edge, over all of a stratum, are refused: for triangles that fill many blocks. `among`: those that
+// matter.
+HWY_NOINLINE inline void refuse_blocks_by_edges(const TileState& state, const HalfPlanes& H, int k,
+                                                const StratumLimits& limits, const BlockGroups& among,
+                                                std::uint64_t* masks) {
     const F f;
+    constexpr int kEdge = HalfPlanes::kEdges;
+    HWY_ALIGN float limit[3][kMaxStrata];
     HWY_ALIGN float least[3][kBlocksPerCell];  // n.h of the block's corner that lies deepest inside
-    for (int k = 0; k < 3; ++k) {
-        const float nx = H.nx[HalfPlanes::kEdges + k], ny = H.ny[HalfPlanes::kEdges + k];
+    for (int edge = 0; edge < 3; ++edge) {
+        const StratumLimits::Plane plane = limits.plane(H, kEdge + edge, k);
+        for (int g = 0; g < limits.group_count(); ++g)
+            hn::Store(limits.in_any_direction(plane, limits.group(g)), f, limit[edge] + limits.group(g));
+        const float nx = H.nx[kEdge + edge][k], ny = H.ny[kEdge + edge][k];
         const float origin = nx * (nx > 0 ? -16.0f : -12.0f) + ny * (ny > 0 ? 12.0f : 16.0f);
-        for (int block = 0; block < kBlocksPerCell; block += kWidth) {
+        for (int block = among.begin * kLanes; block < among.end * kLanes; block += kWidth) {
             const Vec x =
                 hn::MulAdd(hn::Set(f, nx * kBlockSize), hn::Load(f, state.column_of_block + block), hn::Set(f, origin));
             hn::Store(hn::NegMulAdd(hn::Set(f, ny * kBlockSize), hn::Load(f, state.row_of_block + block), x), f,
-                      least[k] + block);
+                      least[edge] + block);
         }
     }
     for (int s = 0; s < state.stratum_count; ++s) {
         if (masks[s] == 0) continue;
-        const Vec l0 = hn::Set(f, limits.limit[HalfPlanes::kEdges][s]),
-                  l1 = hn::Set(f, limits.limit[HalfPlanes::kEdges + 1][s]),
-                  l2 = hn::Set(f, limits.limit[HalfPlanes::kEdges + 2][s]);
-        masks[s] &= for_blocks([&](int first) HWY_ATTR {
-            return hn::And(
-                hn::And(hn::Le(hn::Load(f, least[0] + first), l0), hn::Le(hn::Load(f, least[1] + first), l1)),
-                hn::Le(hn::Load(f, least[2] + first), l2));
-        });
+        const Vec l0 = hn::Set(f, limit[0][s]), l1 = hn::Set(f, limit[1][s]), l2 = hn::Set(f, limit[2][s]);
+        std::uint64_t within = 0;
+        for (int block = among.begin * kLanes; block < among.end * kLanes; block += kWidth) {
+            const Mask inside =
+                hn::And(hn::And(hn::Le(hn::Load(f, least[0] + block), l0), hn::Le(hn::Load(f, least[1] + block), l1)),
+                        hn::Le(hn::Load(f, least[2] + block), l2));
+            within |= bits_of(f, inside) << block;
+        }
+        masks[s] &= within;
     }
 }
 
@@ -172,33 +213,48 @@ inline std::uint64_t blocks_at_camera_plane(const LocalTriangle& T, const CullTe
     return kept;
 }
 
+// Blocks of each slot in which its samples can hit, of `blocks`; returns which slots have any, one bit for each.
+HWY_INLINE void masks_of_slots(const TileState& state, const std::uint64_t* masks, std::uint64_t blocks,
+                               std::uint64_t* slots) {
+    const U64 d;
+    const hn::RebindToSigned<U64> i64;
+    const SlotStrata& S = state.slot_strata;
+    const Vec64 wanted = hn::Set(d, blocks);
+    for (int slot = 0; slot < S.slots; slot += kWidth64) {
+        Vec64 m = hn::Zero(d);
+        for (int round = 0; round < S.rounds; ++round) {
+            const int at = round * S.slots + slot;
+            const Vec64 of_stratum = S.consecutive ? hn::LoadU(d, masks + S.stratum[at])
+                                                   : hn::GatherIndex(d, masks, hn::Load(i64, &S.stratum[at]));
+            m = hn::Or(m, hn::And(of_stratum, hn::Load(d, &S.blocks[at])));
+        }
+        hn::Store(hn::And(m, wanted), d, slots + slot);
+    }
+}
+
 // The vectors (block, slot) of the masks that are not hidden, slot by slot. How many bits a mask has is unpredictable,
-// so bits are written out eight at a time, wanted or not.
+// so all the lanes of a group of blocks are written, wanted or not.
 HWY_NOINLINE inline std::size_t list_jobs(TileState& state, const std::uint64_t* masks, std::uint64_t blocks,
                                           float nearest) {
     const F f;
     const Vec near = hn::Set(f, nearest);
+    const BlockGroups groups(blocks);
+    std::uint64_t* HWY_RESTRICT slots = state.masks_of_slots.data();
+    masks_of_slots(state, masks, blocks, slots);
     Job* HWY_RESTRICT jobs = state.jobs.data();
     std::size_t count = 0;
-    const auto* entry = state.strata.data();
-    const auto* const end = entry + state.strata.size();
-    while (entry != end) {
-        const Job slot = entry->slot;
-        std::uint64_t m = 0;
-        do m |= masks[entry->stratum] & entry->blocks;
-        while (++entry != end && entry->slot == slot);
-        m &= blocks;
+    for (int slot = 0; slot < state.slots; ++slot) {
+        const std::uint64_t m = slots[slot];
         if (m == 0) continue;
-        const float* farthest = &state.farthest[slot * kBlocksPerCell];
-        m &= for_blocks([&](int first) HWY_ATTR { return hn::Le(near, hn::Load(f, farthest + first)); });
-        if (m == 0) continue;
-        const std::size_t next = count + static_cast<std::size_t>(std::popcount(m));
-        do {
-            for (int k = 0; k < 8; ++k, m &= m - 1)
-                jobs[count + k] = slot * kBlocksPerCell + static_cast<Job>(std::countr_zero(m));
-            count += 8;
-        } while (m != 0);
-        count = next;
+        const Job first = static_cast<Job>(slot) * kBlocksPerCell;
+        for (int g = groups.begin; g < groups.end; ++g) {
+            std::uint32_t shown = 0;
+            for (int lane = 0; lane < kLanes; lane += kWidth)
+                shown |= static_cast<std::uint32_t>(
+                    bits_of(f, hn::Le(near, hn::Load(f, &state.farthest[first + g * kLanes + lane]))) << lane);
+            const std::uint32_t wanted = static_cast<std::uint32_t>(m >> g * kLanes) & 0xffffu & shown;
+            count += write_lanes(first + static_cast<Job>(g * kLanes), wanted, jobs + count);
+        }
     }
     return count;
 }

@@ -3,12 +3,6 @@
 
 #include "bound/local_triangle.glsl"
 
-// Closed ranges of what is asked about, in pixels from the cell's middle, y up, and of lens and shutter.
-struct Footprint {
-    float x0, x1, y0, y1;
-    Domain domain;
-};
-
 // One axis of the three corners at both ends of a part of the shutter, index [end].
 struct Axis {
     dvec3 p[2], c[2], w[2];

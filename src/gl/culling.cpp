@@ -48,6 +48,12 @@ Culling parse_gl_culling(const std::string& choice) {
     return culling;
 }
 
+bool asks_hull_of_pixels(const Culling& culling) {
+    return std::any_of(culling.begin(), culling.end(), [](const CullStep& step) {
+        return std::string_view(step.test->name) == "hull" && step.grain == Grain::kPixel;
+    });
+}
+
 std::string culling_shader(const Culling& culling) {
     std::string text = "#include \"gl/footprint.glsl\"\n", tests;
     for (const CullStep& step : culling) {

@@ -60,10 +60,22 @@ EGLContext context_on(EGLDisplay display) {
     if (!has(extensions, "EGL_KHR_surfaceless_context") || !has(extensions, "EGL_KHR_no_config_context"))
         return EGL_NO_CONTEXT;
     if (!eglBindAPI(EGL_OPENGL_API)) return EGL_NO_CONTEXT;
-    constexpr EGLint kAttributes[] = {
-        EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
-    return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, kAttributes);
+    // A robust context says when the driver has lost it (a card that was reset); without it, that is undefined.
+    for (const EGLint strategy : {EGL_LOSE_CONTEXT_ON_RESET, EGL_NO_RESET_NOTIFICATION}) {
+        const bool robust = strategy == EGL_LOSE_CONTEXT_ON_RESET;
+        const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                     4,
+                                     EGL_CONTEXT_MINOR_VERSION,
+                                     5,
+                                     EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                     EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                     robust ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY : EGL_NONE,
+                                     strategy,
+                                     EGL_NONE};
+        const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+        if (context != EGL_NO_CONTEXT) return context;
+    }
+    return EGL_NO_CONTEXT;
 }
 
 int limit(GLenum name) {
@@ -156,9 +168,10 @@ Device::Current::~Current() {
 }
 
 void check(const char* doing) {
-    const GLenum error = glGetError();
+    GLenum error = glGetError();
+    if (error == GL_NO_ERROR && glGetGraphicsResetStatus() != GL_NO_ERROR) error = GL_CONTEXT_LOST;
     if (error == GL_NO_ERROR) return;
-    while (glGetError() != GL_NO_ERROR && error != GL_CONTEXT_LOST) {
+    while (error != GL_CONTEXT_LOST && glGetError() != GL_NO_ERROR) {
     }
     const char* what = error == GL_OUT_OF_MEMORY  ? "out of graphics memory"
                        : error == GL_CONTEXT_LOST ? "the driver has lost the context"

@@ -13,13 +13,16 @@ namespace {
 constexpr GLuint kSampleUnit = 0, kOpacityUnits = 1, kSeenUnit = 0, kTestedImage = 0, kCoveredImage = 1;
 
 const Program& raster_program(Device& device, const std::string& culling) {
-    const std::string shader = culling_shader(parse_gl_culling(culling));
+    const Culling steps = parse_gl_culling(culling);
+    const std::string shader = culling_shader(steps);
     return device.program("raster " + shader, [&] {
         const ShaderSource extra[] = {{"culling", shader}};
+        std::vector<std::string> defines = device.defines();
+        if (asks_hull_of_pixels(steps)) defines.emplace_back("DRAW_HULL");
         return Program({{GL_VERTEX_SHADER, "gl/raster.vert.glsl"},
                         {GL_GEOMETRY_SHADER, "gl/raster.geom.glsl"},
                         {GL_FRAGMENT_SHADER, "gl/raster.frag.glsl"}},
-                       device.defines(), extra);
+                       defines, extra);
     });
 }
 
@@ -144,8 +147,8 @@ RegionHits Pipeline::render(const Region& region) {
     glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
     glViewport(0, 0, region.width(), region.height());
     glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_LESS);  // of equal depths the first stays
-    glDisable(GL_CULL_FACE);
+    glDepthFunc(GL_LESS);    // of equal depths the first stays
+    glEnable(GL_CULL_FACE);  // bounds are front faces, except slivers that rounding turned over
     clear_counters(tested_);
     clear_counters(covered_);
     glBindImageTexture(kTestedImage, tested_, 0, GL_FALSE, 0, GL_READ_WRITE, GL_R32UI);

@@ -21,6 +21,7 @@ in Bound {
     flat vec3 z_q;
     flat vec3 z_r;
     flat vec4 box;
+    flat ivec4 pixels;
     flat uint triangle;
 } bound;
 
@@ -29,6 +30,8 @@ layout(location = 0) out uvec2 seen;  // triangle, bits of its depth
 void main() {
     if (gl_SampleID >= pass_slots) discard;
     ivec2 place = ivec2(gl_FragCoord.xy), pixel = place + region.xz;
+    ivec4 p = bound.pixels;
+    if (pixel.x < p.x || pixel.x >= p.y || pixel.y < p.z || pixel.y >= p.w) discard;
     vec2 centre = cell_centre(pixel / kCellSize);
     LocalTriangle T = localize(MovingTriangle(bound.q, bound.r, bound.z_q, bound.z_r), bound.box, centre, segments, segment,
                                two_sided);

@@ -1,13 +1,20 @@
 // The conservative bound of a moving, defocused triangle: the whole pixels of the fifteen-edge box, as the CPU bins them
 // (bin/bins.h). Their sides lie between the pixels, so that the rasterizer's own sample positions, which have nothing to do
 // with ours, are all inside and nothing has to be dilated.
+//
+// For `--culling hull` instead the convex hull of the six points on the screen, grown by the circle of confusion and by a
+// pixel for the rasterizer's positions: all pixels of which a part is in the hull, and some more, which the fragment shader
+// refuses. Triangles at the camera plane have their box.
 
 #include "bound/facing.glsl"
 #include "bound/screen_bounds.glsl"
 #include "frame/opacity.glsl"
+#ifdef DRAW_HULL
+#include "gl/hull_strip.glsl"
+#endif
 
 layout(triangles) in;
-layout(triangle_strip, max_vertices = 4) out;
+layout(triangle_strip, max_vertices = 12) out;
 
 uniform uint first_triangle;  // of the part
 uniform bool two_sided;
@@ -24,6 +31,7 @@ out Bound {
     flat vec3 z_q;
     flat vec3 z_r;
     flat vec4 box;
+    flat ivec4 pixels;
     flat uint triangle;
 } bound;
 
@@ -39,15 +47,17 @@ bool is_usable(MovingTriangle m) {
            all(lessThanEqual(abs(m.z_r), vec3(kLargestCoordinate)));
 }
 
-void emit(MovingTriangle m, vec4 box, int x, int y) {
+// `place`: in pixels of the framebuffer.
+void emit(MovingTriangle m, vec4 box, ivec4 pixels, vec2 place) {
     bound.q = m.q;
     bound.r = m.r;
     bound.z_q = m.z_q;
     bound.z_r = m.z_r;
     bound.box = box;
+    bound.pixels = pixels;
     bound.triangle = first_triangle + uint(gl_PrimitiveIDIn);
-    gl_Position = vec4(2.0 * float(x - region.x) / float(region.y - region.x) - 1.0,
-                       2.0 * float(y - region.z) / float(region.w - region.z) - 1.0, 0.0, 1.0);
+    gl_Position = vec4(2.0 * place.x / float(region.y - region.x) - 1.0, 2.0 * place.y / float(region.w - region.z) - 1.0,
+                       0.0, 1.0);
     EmitVertex();
 }
 
@@ -65,9 +75,24 @@ void main() {
     if (pixels.x >= pixels.y || pixels.z >= pixels.w) return;
     if (!two_sided && facing(m) == kBack) return;
     vec4 box = exact_box(m, bounds);
-    emit(m, box, pixels.x, pixels.z);
-    emit(m, box, pixels.y, pixels.z);
-    emit(m, box, pixels.x, pixels.w);
-    emit(m, box, pixels.y, pixels.w);
+#ifdef DRAW_HULL
+    vec2 outline[kMostCorners];
+    int corners = reaches_camera(m) ? 0 : hull_outline(m, outline);
+    if (corners > 0) {
+        // 0, n - 1, 1, n - 2, ...: a strip across the polygon. Where rounding has turned one of its triangles over, that is
+        // culled: no sample is drawn twice.
+        for (int k = 0; k < corners; ++k) {
+            int at = k % 2 == 0 ? k / 2 : corners - (k + 1) / 2;
+            emit(m, box, pixels, outline[at] - vec2(region.xz));
+        }
+        EndPrimitive();
+        return;
+    }
+#endif
+    vec4 sides = vec4(pixels - region.xxzz);
+    emit(m, box, pixels, sides.xz);
+    emit(m, box, pixels, sides.yz);
+    emit(m, box, pixels, sides.xw);
+    emit(m, box, pixels, sides.yw);
     EndPrimitive();
 }

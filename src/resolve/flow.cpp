@@ -38,9 +38,9 @@ Placed place_of(const Frame& frame, const SurfaceSample& sample) {
 }
 
 Flow::Flow(const Scene& scene, const RenderSettings& settings, double number)
-    : previous_(pose_instant(scene, frame_before(settings), number - 1.0)),
+    : previous_(pose_instant(scene, frame_before(settings), number - settings.image.flow_step)),
       now_(pose_instant(scene, settings, number)),
-      next_(pose_instant(scene, frame_after(settings), number + 1.0)) {}
+      next_(pose_instant(scene, frame_after(settings), number + settings.image.flow_step)) {}
 
 std::optional<glm::vec2> Flow::between(const Frame& from, const Frame& to, const SurfaceSample& sample) {
     const Placed a = place_of(from, sample), b = place_of(to, sample);

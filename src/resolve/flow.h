@@ -1,7 +1,7 @@
 #pragma once
-// Where the points of a frame's surfaces are on the screen one frame earlier and later. The scene is posed at
-// mid-shutter of the neighbouring frames, each through its own camera: displacement between frames, whatever the
-// shutter.
+// Where the points of a frame's surfaces are on the screen one frame (ImageSettings::flow_step) earlier and later. The
+// scene is posed at mid-shutter of the neighbouring frames, each through its own camera: displacement between frames,
+// whatever the shutter.
 
 #include <glm/vec2.hpp>
 #include <optional>

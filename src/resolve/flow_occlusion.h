@@ -33,8 +33,8 @@ class FlowOcclusion {
 
     /// `settings` and `number` are those of the frame that is rendered.
     FlowOcclusion(const Frame& frame, const RenderSettings& settings, double number)
-        : previous_(*frame.scene, frame_before(settings), number - 1.0, frame.textures),
-          next_(*frame.scene, frame_after(settings), number + 1.0, frame.textures) {}
+        : previous_(*frame.scene, frame_before(settings), number - settings.image.flow_step, frame.textures),
+          next_(*frame.scene, frame_after(settings), number + settings.image.flow_step, frame.textures) {}
 
     Fate forward(const SurfaceSample& sample) const { return next_.of(sample); }
     Fate backward(const SurfaceSample& sample) const { return previous_.of(sample); }

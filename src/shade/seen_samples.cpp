@@ -12,8 +12,6 @@
 #include <hwy/highway.h>
 #include <numbers>
 
-#include "base/cpu.h"
-
 HWY_BEFORE_NAMESPACE();
 namespace pentaprism {
 namespace HWY_NAMESPACE {
@@ -173,26 +171,16 @@ void see_batch(const SeenSamples::Batch& batch, bool cells) {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "base/cpu_dispatch.h"
+
 namespace pentaprism {
 namespace {
 
 using SeeBatch = void (*)(const SeenSamples::Batch&, bool);
 
 SeeBatch see_batch() {
-    switch (cpu_isa()) {
-#ifndef PENTAPRISM_SCALAR_ONLY
-#if HWY_TARGETS & HWY_AVX3
-        case Isa::kAvx512:
-            return N_AVX3::see_batch;
-#endif
-#if HWY_TARGETS & HWY_AVX2
-        case Isa::kAvx2:
-            return N_AVX2::see_batch;
-#endif
-#endif
-        default:
-            return HWY_STATIC_DISPATCH(see_batch);
-    }
+    PENTAPRISM_RETURN_FOR_CPU(see_batch);
+    return HWY_STATIC_DISPATCH(see_batch);
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 #include <glm/geometric.hpp>
 #include <hwy/highway.h>
 
-#include "base/cpu.h"
 #include "sample/net.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -387,23 +386,13 @@ ShadowLookup lookup() {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "base/cpu_dispatch.h"
+
 namespace pentaprism {
 
 ShadowLookup shadow_lookup() {
-    switch (cpu_isa()) {
-#ifndef PENTAPRISM_SCALAR_ONLY
-#if HWY_TARGETS & HWY_AVX3
-        case Isa::kAvx512:
-            return N_AVX3::lookup();
-#endif
-#if HWY_TARGETS & HWY_AVX2
-        case Isa::kAvx2:
-            return N_AVX2::lookup();
-#endif
-#endif
-        default:
-            return HWY_STATIC_DISPATCH(lookup)();
-    }
+    PENTAPRISM_RETURN_FOR_CPU(lookup());
+    return HWY_STATIC_DISPATCH(lookup)();
 }
 
 }  // namespace pentaprism

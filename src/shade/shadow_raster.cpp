@@ -12,7 +12,6 @@
 #include <hwy/highway.h>
 #include <optional>
 
-#include "base/cpu.h"
 #include "cover/vector_opacity-inl.h"
 #include "sample/net.h"
 
@@ -175,6 +174,8 @@ void draw_cell(const ShadowCellWork& work, float* depths) {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "base/cpu_dispatch.h"
+
 namespace pentaprism {
 
 ShadowSamples::ShadowSamples(std::uint32_t seed)
@@ -207,20 +208,8 @@ std::size_t ShadowSamples::index_of(int cx, int cy) const {
 }
 
 DrawShadowCell draw_shadow_cell() {
-    switch (cpu_isa()) {
-#ifndef PENTAPRISM_SCALAR_ONLY
-#if HWY_TARGETS & HWY_AVX3
-        case Isa::kAvx512:
-            return N_AVX3::draw_cell;
-#endif
-#if HWY_TARGETS & HWY_AVX2
-        case Isa::kAvx2:
-            return N_AVX2::draw_cell;
-#endif
-#endif
-        default:
-            return HWY_STATIC_DISPATCH(draw_cell);
-    }
+    PENTAPRISM_RETURN_FOR_CPU(draw_cell);
+    return HWY_STATIC_DISPATCH(draw_cell);
 }
 
 }  // namespace pentaprism

@@ -52,7 +52,39 @@ assert abs(frame["exposure_s"] - 0.5 / 24) < 1e-12 or frame["exposure_s"] > 0
 assert frame["knots"][0]["time_s"] == frame["shutter_open_s"] and frame["knots"][-1]["time_s"] == frame["shutter_close_s"]
 assert all(knot["fx"] == frame["intrinsics"]["fx"] for knot in frame["knots"]), "nothing zooms"
 assert frame["knots"][0]["world_to_camera_column_major"] != frame["knots"][-1]["world_to_camera_column_major"]
+assert frame["rolling_shutter"] == "none" and frame["readout_lines"] == 0 == frame["readout_s"] and frame["exposure_lines"] is None
 assert "blur/0004.png" in manifest["files"] and len(manifest["files"]["flow/0003.flo"]) == 32
+PY
+
+# Flow between the shutter's ends: there and back again; as a file of its own it is the sharp frames' `motion`.
+succeeds render builtin:cubes --dataset ends --frame 3 -r 96x54 -s 4 --shutter 1 --rolling-shutter left --rolling-shutter-duration 0.5 --fstop 2
+check "flow between the shutter's ends goes there and back; lines are counted" python3 - "$support" <<'PY'
+import json, struct, sys
+sys.path.insert(0, sys.argv[1])
+import read_exr
+
+flow = read_exr.read("ends/flow-shutter/0003.exr")[0]["channels"]
+flo = open("ends/flow-shutter/0003.flo", "rb").read()
+assert struct.unpack_from("<fii", flo) == (202021.25, 96, 54)
+assert list(struct.unpack_from("<%df" % (2 * 96 * 54), flo, 12))[0::2] == list(flow["forward.u"])
+opened, closed = (read_exr.read(f"ends/sharp-{end}/0003.exr")[0]["channels"]["Z"] for end in ("open", "close"))
+there_and_back = longest = 0
+for y in range(54):
+    for x in range(96):
+        u, v = flow["forward.u"][y * 96 + x], flow["forward.v"][y * 96 + x]
+        to_x, to_y = int(x + 0.5 + u), int(y + 0.5 + v)
+        if opened[y * 96 + x] > 1e30 or not (0 <= to_x < 96 and 0 <= to_y < 54):
+            continue
+        i = to_y * 96 + to_x
+        off = abs(u + flow["backward.u"][i]) + abs(v + flow["backward.v"][i])
+        there_and_back += off < 0.5
+        longest = max(longest, abs(u) + abs(v))
+assert longest > 2, longest
+assert there_and_back > 0.7 * 96 * 54, there_and_back
+frame = json.load(open("ends/camera.json"))["frames"][0]
+assert frame["rolling_shutter"] == "left" and frame["readout_lines"] == 96
+assert abs(frame["readout_s"] - 0.5 / 24) < 1e-9 and abs(frame["exposure_s"] - 1 / 24) < 1e-9
+assert abs(frame["line_s"] * 96 - frame["readout_s"]) < 1e-12 and abs(frame["exposure_lines"] - 192) < 1e-6
 PY
 
 # A second run makes what is missing; the manifest covers both.

@@ -30,5 +30,8 @@ refuses 2 "--culling half-space: not with --backend gl, which has auto, .*none" 
 refuses 2 "--culling bbox@bucket: not with --backend gl" render builtin:cubes -o a.png --backend gl --culling bbox@bucket
 refuses 2 "--backend gl: --visibility raytrace" render builtin:cubes -o a.png --backend gl --visibility raytrace
 __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null refuses 5 "--backend gl: .*install" render builtin:cubes -o a.png --backend gl
+if grep -q Mesa gl.json; then
+    MESA_GL_VERSION_OVERRIDE=3.3 refuses 5 "--backend gl: .*4\.5" render builtin:cubes -o a.png --backend gl
+fi
 check "no file was made" test ! -e a.png
 finish

@@ -1,8 +1,10 @@
 // Arbitrary output variables against what a scene of one moving square must give.
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <gtest/gtest.h>
+#include <map>
 #include <pentaprism/aov.h>
 #include <pentaprism/error.h>
 #include <pentaprism/render.h>
@@ -121,6 +123,56 @@ TEST(Aovs, IdsGoToWhatMostSamplesSee) {
             partly = partly || (coverage > 0 && coverage < 1);
         }
     EXPECT_TRUE(partly);
+}
+
+// Each thing of one colour: what Cryptomatte says of a blurred pixel, times what the sharp things look like, is the
+// pixel.
+TEST(Aovs, TheSumOverSharpComponentsIsTheBlurredPixel) {
+    Scene scene = scene_of_two();
+    scene.nodes[1].name = "front";
+    add_mesh(scene, {square(0.7f, -3.0f, 0)});  // behind the mover, before the wall
+    scene.nodes.back().name = "middle";
+    scene.materials.push_back(scene.materials[0]);
+    scene.meshes[0].primitives[0].material = 2;
+    const std::map<std::string, glm::vec3> colors{
+        {"front", {1.0f, 0.5f, 0.25f}}, {"middle", {0.0f, 0.75f, 0.5f}}, {"mover", {0.25f, 0.25f, 1.0f}}};
+    const auto paint = [&](Index material, const glm::vec3& color) {
+        scene.materials[material].unlit = true;
+        scene.materials[material].base_color = glm::vec4(color, 1.0f);
+    };
+    paint(2, colors.at("front")), paint(0, colors.at("middle")), paint(1, colors.at("mover"));  // the wall
+    RenderSettings settings = settings_with({Aov::kCryptomatte, Aov::kTime, Aov::kObjectId});
+    settings.image.filter = Filter::kBox;
+    settings.shutter.shutter = 1.0;
+    settings.camera.lens_radius = 0.2;
+    settings.camera.focus_distance = 3.0;
+    const Picture picture = picture_of(scene, settings);
+    int mixed = 0;
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+            glm::dvec3 sum(0.0);
+            int components = 0;
+            for (int rank = 0; rank < kCryptomatteRanks; ++rank) {
+                const float id = value(picture, 2 * rank, x, y), share = value(picture, 2 * rank + 1, x, y);
+                if (share == 0.0f) continue;
+                ++components;
+                const auto known = std::find_if(colors.begin(), colors.end(), [&](const auto& thing) {
+                    NamedIds ids;
+                    return id == ids.cryptomatte_id(ids.add(thing.first, ""));
+                });
+                ASSERT_NE(known, colors.end());
+                sum += double(share) * glm::dvec3(known->second);
+            }
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(sum[c], picture.rgba[4 * (static_cast<std::size_t>(y) * kSize + x) + c], 2e-6)
+                    << x << ' ' << y;
+            // The blend fraction is the share of the object that most samples see.
+            const int time = 4 * kCryptomatteRanks;
+            EXPECT_NEAR(value(picture, time + 2, x, y), value(picture, 1, x, y), 1e-6) << x << ' ' << y;
+            EXPECT_LE(value(picture, time, x, y), value(picture, time + 1, x, y));
+            mixed += components > 1;
+        }
+    EXPECT_GT(mixed, 50);
 }
 
 TEST(Aovs, VarianceIsThatOfTheMeanOfTheSamples) {

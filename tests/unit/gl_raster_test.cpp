@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdio>
 #include <cstdlib>
+#include <epoxy/egl.h>
+#include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
+#include <optional>
 #include <pentaprism/error.h>
 #include <pentaprism/render.h>
 #include <pentaprism/settings.h>
@@ -15,6 +19,7 @@
 #include "peer/posed_picture.h"
 #include "render/visibility.h"
 #include "support/isa.h"
+#include "support/random.h"
 #include "support/scenes.h"
 
 namespace pentaprism {
@@ -106,7 +111,22 @@ TEST_F(GlBackend, CountsAsTheProcessorWithEachCullingTest) {
     settings.camera.fstop = 2.8;
     std::vector<std::string> choices = gl::culling_names();
     choices.emplace_back("improved-dual-space@tile+hyperplane@pixel");
+    choices.emplace_back("hull+dual-space");
+    choices.emplace_back("hull@tile");
     for (const std::string& culling : choices) expect_same(scene, settings, 24, culling);
+}
+
+TEST_F(GlBackend, CountsAsTheProcessorInHulls) {
+    for (const char* name : {"builtin:cubes", "builtin:hand"}) {
+        const Scene scene = load_scene(name);
+        RenderSettings settings = settings_of(64, 48, 4);
+        expect_same(scene, settings, 24, "hull");  // motion alone
+        settings.camera.fstop = 2.8;
+        expect_same(scene, settings, 24, "hull");
+        settings.image.width = 61;  // the middle of the picture is that of a pixel
+        settings.shutter.motion_blur = false;
+        expect_same(scene, settings, 24, "hull");
+    }
 }
 
 TEST_F(GlBackend, SeesTheSameInFilesOfOthers) {
@@ -120,6 +140,66 @@ TEST_F(GlBackend, SeesTheSameInFilesOfOthers) {
         settings.camera.fstop = 2.8;
         expect_same(load_scene(std::string(folder) + "/" + file), settings, 12, "none");
     }
+}
+
+struct Differences {
+    std::int64_t scenes = 0, refused = 0, unreadable = 0, samples = 0, seen = 0, triangles = 0, depths = 0;
+};
+
+void compare_scene(const Scene& scene, const RenderSettings& settings, Differences& found) {
+    const PosedPicture picture = pose_picture(scene, settings, 12);
+    Seen gl;
+    try {
+        gl = look(picture, Backend::kGl, "none");
+    } catch (const Error& error) {  // glass
+        EXPECT_EQ(error.kind(), ErrorKind::kBackend) << error.what();
+        EXPECT_NE(std::string(error.what()).find("lets light through"), std::string::npos) << error.what();
+        ++found.refused;
+        return;
+    }
+    const Seen cpu = look(picture, Backend::kCpu, "none");
+    const std::int64_t triangles = differing(cpu.triangle, gl.triangle);
+    EXPECT_EQ(triangles, 0) << scene.name;
+    ++found.scenes;
+    found.samples += static_cast<std::int64_t>(cpu.triangle.size());
+    found.seen += std::count_if(cpu.triangle.begin(), cpu.triangle.end(), [](auto t) { return t != kNoTriangle; });
+    found.triangles += triangles;
+    found.depths += differing(cpu.depth, gl.depth);
+}
+
+// Ties at edges and between depths are decided alike, so nothing may differ; what does is counted by the million.
+TEST_F(GlBackend, SeesTheSameInEverySharedScene) {
+    const char* folder = std::getenv("PENTAPRISM_SCENES");
+    if (folder == nullptr) GTEST_SKIP() << "PENTAPRISM_SCENES is not set";
+    RenderSettings settings = settings_of(64, 32, 3);
+    settings.camera.fstop = 2.8;
+    Differences found;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+        const std::string file = entry.path().string(), kind = entry.path().extension().string();
+        if (kind != ".glb" && kind != ".gltf" && kind != ".obj") continue;
+        const bool of_many = file.find("/malformed/") != file.npos || file.find("/parts/") != file.npos ||
+                             file.find("/khronos-generator/") != file.npos;
+        if (of_many && support::effort() == 1) continue;
+        std::optional<Scene> scene;
+        try {
+            scene = load_scene(file);
+        } catch (const Error&) {  // some are damaged on purpose
+            ++found.unreadable;
+        }
+        if (scene) compare_scene(*scene, settings, found);
+    }
+    const double per_million = 1e6 / static_cast<double>(std::max<std::int64_t>(1, found.samples));
+    std::printf(
+        "%lld scenes (%lld more with glass refused, %lld unreadable), %lld samples, of which %lld see something: "
+        "%.3f per million differ in triangle, %.3f in depth\n",
+        static_cast<long long>(found.scenes), static_cast<long long>(found.refused),
+        static_cast<long long>(found.unreadable), static_cast<long long>(found.samples),
+        static_cast<long long>(found.seen), static_cast<double>(found.triangles) * per_million,
+        static_cast<double>(found.depths) * per_million);
+    EXPECT_GT(found.scenes, 0);
+    EXPECT_GT(found.seen, found.samples / 20);
+    EXPECT_EQ(found.triangles, 0);
+    EXPECT_EQ(found.depths, 0);
 }
 
 TEST_F(GlBackend, TakesPatternsRollingShuttersCropsAndSmallTilesAsTheProcessorDoes) {
@@ -207,6 +287,27 @@ TEST_F(GlBackend, ShaderThatDoesNotCompileIsOneLine) {
         EXPECT_NE(said.find("shader bad"), std::string::npos) << said;
     }
     gl::check("compiling");
+}
+
+// In a process of its own, whose display is taken away.
+TEST_F(GlBackend, ContextThatIsLostIsOneLine) {
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    const auto lose_it = [] {
+        const PosedPicture picture = pose_picture(load_scene("builtin:cubes"), settings_of(32, 32, 1), 0);
+        look(picture, Backend::kGl, "none");
+        {
+            const gl::Device::Current current(gl::Device::get());
+            eglTerminate(eglGetCurrentDisplay());
+        }
+        try {
+            look(picture, Backend::kGl, "none");
+        } catch (const Error& error) {
+            std::fprintf(stderr, "<%s>\n", error.what());
+            std::_Exit(static_cast<int>(error.kind()));
+        }
+        std::_Exit(0);
+    };
+    EXPECT_EXIT(lose_it(), testing::ExitedWithCode(5), "^<--backend gl: [^\n]*context[^\n]*>\n$");
 }
 
 std::int64_t resident_kilobytes() {

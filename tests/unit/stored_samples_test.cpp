@@ -255,6 +255,145 @@ TEST(StoredSamples, AGlobalShutterBecomesARollingOneOrOneWithACurve) {
     EXPECT_NEAR(again.info.shutter_open, direct.info.shutter_open, 1e-12);
 }
 
+// What many seeds say of two kinds of pictures: Welch's z of each block of 8 x 8 pixels, whose mean is one independent
+// number for each seed.
+struct Agreement {
+    double mean_square = 0.0, largest = 0.0;
+    int blocks = 0;
+};
+constexpr int kSeeds = 16;
+template <class One, class Other>
+Agreement compare_seeds(const One& one, const Other& other, int border) {
+    constexpr int kBlock = 8, kAcross = kSize / kBlock;
+    struct Moments {
+        double sum = 0.0, squares = 0.0;
+        double mean() const { return sum / kSeeds; }
+        double variance_of_mean() const { return (squares - sum * sum / kSeeds) / (kSeeds - 1) / kSeeds; }
+    };
+    std::vector<Moments> moments[2];
+    for (auto& kind : moments) kind.resize(kAcross * kAcross);
+    for (int seed = 0; seed < kSeeds; ++seed) {
+        const Rows pictures[2] = {one(2 * seed), other(2 * seed + 1)};
+        for (int kind = 0; kind < 2; ++kind)
+            for (int block = 0; block < kAcross * kAcross; ++block) {
+                double mean = 0.0;
+                for (int i = 0; i < kBlock * kBlock; ++i)
+                    mean += pictures[kind].red(block % kAcross * kBlock + i % kBlock,
+                                               block / kAcross * kBlock + i / kBlock) /
+                            (kBlock * kBlock);
+                moments[kind][block].sum += mean;
+                moments[kind][block].squares += mean * mean;
+            }
+    }
+    Agreement result;
+    for (int block = 0; block < kAcross * kAcross; ++block) {
+        const int x = block % kAcross * kBlock, y = block / kAcross * kBlock;
+        if (std::min(x, y) < border || std::max(x, y) + kBlock > kSize - border) continue;
+        const Moments &a = moments[0][block], &b = moments[1][block];
+        const double variance = a.variance_of_mean() + b.variance_of_mean(), difference = a.mean() - b.mean();
+        if (variance < 1e-14) {  // one colour in all of them
+            EXPECT_NEAR(difference, 0.0, 1e-5) << x << ' ' << y;
+            continue;
+        }
+        const double z2 = difference * difference / variance;
+        result.mean_square += z2;
+        result.largest = std::max(result.largest, std::sqrt(z2));
+        ++result.blocks;
+    }
+    result.mean_square /= std::max(1, result.blocks);
+    return result;
+}
+
+// With 30 degrees of freedom the mean of z^2 is 30/28, and one z in 100,000 is over 5.2.
+void expect_same_distribution(const Agreement& agreement, const char* what) {
+    EXPECT_GT(agreement.blocks, 8) << what;
+    EXPECT_LT(agreement.largest, 5.2) << what;
+    EXPECT_LT(agreement.mean_square, 1.0 + 4.0 * std::sqrt(2.5 / agreement.blocks)) << what;
+}
+
+TEST(StoredSamples, DevelopedPicturesAreDirectRendersInTheMeanOfManySeeds) {
+    struct Case {
+        const char* what;
+        RenderSettings recorded, direct, wrong;  // `wrong` must be told from what is developed
+        Development wanted;
+        int border;
+    };
+    std::vector<Case> cases;
+    {
+        Development far;
+        far.focus_distance = 3.0;
+        cases.push_back(
+            {"refocused", settings_focused_at(6.0), settings_focused_at(3.0), settings_focused_at(3.45), far, 8});
+    }
+    {
+        RenderSettings wide = settings_focused_at(4.0), narrow = wide;
+        wide.camera.lens_radius.reset(), narrow.camera.lens_radius.reset();
+        wide.camera.fstop = 0.04, narrow.camera.fstop = 0.06;
+        narrow.camera.focus_distance = 5.0;
+        Development small;
+        small.fstop = 0.06;
+        small.focus_distance = 5.0;
+        RenderSettings wrong = narrow;
+        wrong.camera.focus_distance = 2.5;
+        cases.push_back({"refocused with a smaller aperture", wide, narrow, wrong, small, 8});
+    }
+    {
+        RenderSettings recorded = settings_focused_at(2.0, 64), direct = settings_focused_at(2.0);
+        recorded.shutter.shutter = 2.0;
+        direct.shutter.shutter = 0.5;
+        direct.shutter.position = ShutterPosition::kStart;  // opens at mid-shutter of the recorded one
+        Development late;
+        late.shutter = 0.5;
+        late.shutter_offset = 0.25;
+        RenderSettings wrong = direct;
+        wrong.shutter.shutter = 0.75;
+        cases.push_back({"retimed", recorded, direct, wrong, late, 0});
+        direct.shutter.position = ShutterPosition::kCenter;
+        direct.shutter.curve = trapezoid_shutter(0.3, 0.5);
+        direct.shutter.rolling = RollingShutter::kTop;
+        direct.shutter.rolling_duration = 1.25;
+        Development rolling;
+        rolling.shutter = 0.5;
+        rolling.curve = direct.shutter.curve;
+        rolling.rolling = RollingShutter::kTop;
+        rolling.rolling_duration = 1.25;
+        wrong = direct;
+        wrong.shutter.rolling = RollingShutter::kBottom;
+        cases.push_back({"global to rolling, with a curve", recorded, direct, wrong, rolling, 0});
+    }
+    for (const Case& c : cases) {
+        const auto with_seed = [](RenderSettings settings, std::uint32_t seed) {
+            settings.method.seed = seed;
+            return settings;
+        };
+        const auto later = [&](std::uint32_t seed) {
+            return developed(samples_of(with_seed(c.recorded, seed)), c.wanted);
+        };
+        const auto direct = [&](std::uint32_t seed) { return rendered(with_seed(c.direct, seed)); };
+        expect_same_distribution(compare_seeds(later, direct, c.border), c.what);
+        const auto wrong = [&](std::uint32_t seed) { return rendered(with_seed(c.wrong, seed)); };
+        const Agreement off = compare_seeds(later, wrong, c.border);
+        EXPECT_GT(off.largest, 8.0) << c.what;
+    }
+}
+
+// A pixel's samples lie in time strata of their own, so each slice of the open time holds one of them.
+TEST(StoredSamples, TheMeanOfTheSharpSlicesIsTheBlurredPicture) {
+    RenderSettings settings = settings_focused_at(3.0, 16);
+    settings.shutter.shutter = 2.0;
+    const Bytes bytes = samples_of(settings);
+    const Rows blurred = rendered(settings);
+    std::vector<double> mean(blurred.rgba.size());
+    for (int slice = 0; slice < 16; ++slice) {
+        Development thin;
+        thin.shutter = 2.0 / 16;
+        thin.shutter_offset = 2.0 * (slice + 0.5) / 16 - 1.0;
+        const Rows sharp = developed(bytes, thin);
+        for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += sharp.rgba[i] / 16.0;
+    }
+    for (std::size_t i = 0; i < mean.size(); ++i) ASSERT_NEAR(mean[i], blurred.rgba[i], 2e-6) << i;
+}
+
 TEST(StoredSamples, RefuseWhatTheyDoNotHold) {
     const Bytes bytes = samples_of(settings_focused_at(4.0, 1));
     const auto refused = [](const Bytes& samples, auto change) {
