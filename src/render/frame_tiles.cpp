@@ -74,7 +74,7 @@ FrameTiles::FrameTiles(const Scene& scene, const KeptParts& kept, const RenderSe
         MethodSettings pilot = settings.method;
         pilot.seed = SampleBudget::pilot_seed(pilot.seed);
         samples_.emplace(make_samples(frame_, budget_->pilot_spp(), pilot));
-        for (const int spp : budget_->levels()) for_levels_.push_back(make_samples(frame_, spp, settings.method));
+        for_levels_.resize(budget_->levels().size());
     } else {
         samples_.emplace(make_samples(frame_, settings.image.spp, settings.method));
     }
@@ -196,6 +196,16 @@ void FrameTiles::add_samples(const Tile& tile, const SampleTable& samples, Worke
     costs_.samples += std::int64_t{pixels} * samples.spp();
 }
 
+const SampleTable& FrameTiles::samples_of_level(std::size_t level) {
+    const std::lock_guard<std::mutex> lock(making_);
+    std::optional<SampleTable>& samples = for_levels_[level];
+    if (samples) return *samples;
+    const auto start = Clock::now();
+    isolated([&] { samples.emplace(make_samples(frame_, budget_->levels()[level], settings_.method)); });
+    costs_.tables_ns += nanoseconds(Clock::now() - start);
+    return *samples;
+}
+
 void FrameTiles::render(const Tile& tile, Worker& worker) {
     worker.sums.start(tile, filter_.reach(), channel_count(info_.aovs));
     if (!budget_) return add_samples(tile, *samples_, worker);
@@ -206,7 +216,7 @@ void FrameTiles::render(const Tile& tile, Worker& worker) {
         if (blocks[level] == 0) continue;
         Tile part = tile;
         part.blocks = blocks[level];
-        add_samples(part, for_levels_[level], worker);
+        add_samples(part, samples_of_level(level), worker);
     }
 }
 
@@ -225,7 +235,7 @@ void FrameTiles::fill(RenderStats& stats) const {
     const double per_thread = 1e-6 / thread_count();
     const double cover_ms = static_cast<double>(costs_.cover_ns) * per_thread;
     stats.times_ms = {{"pose", pose_ms_},
-                      {"samples", samples_ms_},
+                      {"samples", samples_ms_ + 1e-6 * static_cast<double>(costs_.tables_ns)},
                       {"bin", bin_ms_},
                       {"prepare_shading", prepare_ms_},
                       {"cover", cover_ms},
