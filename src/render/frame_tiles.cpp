@@ -172,12 +172,12 @@ int FrameTiles::delivered_pixels(const Tile& tile) const {
     return pixels;
 }
 
-void FrameTiles::cover_and_shade(const Tile& tile, const SampleTable& samples, Worker& worker, CoverMap* map) {
+void FrameTiles::cover_and_shade(const Tile& tile, const SampleTable& samples, Worker& worker, bool to_decide) {
     const auto start = Clock::now();
     CoverCounts counts;
-    visibility_->cover(tile, samples, worker.hits, counts, map);
+    visibility_->cover(tile, samples, worker.hits, counts, tests_ && !to_decide ? &*tests_ : nullptr);
     const auto covered = Clock::now();
-    costs_.shaded += worker.shader.shade(*shading_, samples, tile, worker.hits, worker.shade);
+    costs_.shaded += worker.shader.shade(*shading_, samples, tile, worker.hits, worker.shade, to_decide);
     costs_.cover_ns += nanoseconds(covered - start);
     costs_.shade_ns += nanoseconds(Clock::now() - covered);
     costs_.tested += counts.tested;
@@ -185,7 +185,7 @@ void FrameTiles::cover_and_shade(const Tile& tile, const SampleTable& samples, W
 }
 
 void FrameTiles::add_samples(const Tile& tile, const SampleTable& samples, Worker& worker) {
-    cover_and_shade(tile, samples, worker, tests());
+    cover_and_shade(tile, samples, worker, false);
     const auto start = Clock::now();
     worker.sums.tile.blocks = tile.blocks;
     filter_.add(samples, worker.hits, worker.shade, worker.sums);
@@ -209,7 +209,7 @@ const SampleTable& FrameTiles::samples_of_level(std::size_t level) {
 void FrameTiles::render(const Tile& tile, Worker& worker) {
     worker.sums.start(tile, filter_.reach(), channel_count(info_.aovs));
     if (!budget_) return add_samples(tile, *samples_, worker);
-    cover_and_shade(tile, *samples_, worker, nullptr);
+    cover_and_shade(tile, *samples_, worker, true);
     costs_.pilot_samples += std::int64_t{delivered_pixels(tile)} * samples_->spp();
     const auto blocks = budget_->share_out(tile, *samples_, worker.shade);
     for (std::size_t level = 0; level < blocks.size(); ++level) {
@@ -221,7 +221,7 @@ void FrameTiles::render(const Tile& tile, Worker& worker) {
 }
 
 void FrameTiles::store(const Tile& tile, Worker& worker) {
-    cover_and_shade(tile, *samples_, worker, tests());
+    cover_and_shade(tile, *samples_, worker, false);
     const auto start = Clock::now();
     store_samples(tile, *samples_, worker.hits, worker.shade, background_of(*frame_.scene, settings_.image),
                   worker.samples);

@@ -59,13 +59,13 @@ class FrameTiles {
         std::atomic<std::int64_t> cover_ns{0}, shade_ns{0}, resolve_ns{0}, tested{0}, covered{0}, shaded{0}, samples{0},
             pilot_samples{0}, pixels{0}, tables_ns{0};
     };
-    /// Leaves hits and colours in the worker. `map`: may be null.
-    void cover_and_shade(const Tile& tile, const SampleTable& samples, Worker& worker, CoverMap* map);
+    /// Leaves hits and colours in the worker. `to_decide`: samples that are not shown; their tests are not mapped and
+    /// their colours are rough.
+    void cover_and_shade(const Tile& tile, const SampleTable& samples, Worker& worker, bool to_decide);
     void add_samples(const Tile& tile, const SampleTable& samples, Worker& worker);
     /// Makes it when it is asked for first.
     const SampleTable& samples_of_level(std::size_t level);
     int delivered_pixels(const Tile& tile) const;
-    CoverMap* tests() { return tests_ ? &*tests_ : nullptr; }
     FrameInfo describe(std::span<const Index> animations, double number) const;
     void make_aovs(double number);
 

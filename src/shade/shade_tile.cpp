@@ -14,6 +14,7 @@ namespace {
 constexpr int kSamplesPerChunk = 1 << 16;
 constexpr int kQuarters = QuarterColors::kQuarters;
 constexpr int kLookups = ShadowPoint::kLanes / kQuarters;  // of a quarter
+constexpr int kRoughLevel = 2;                             // 2^2 = kBlockSize
 constexpr float kBrightest = 0x1p20f;
 
 // Of four bits, how many are set. (The processor's own instruction is a call where the build does not assume it.)
@@ -78,14 +79,15 @@ void clear(const Tile& tile, int slots, std::vector<std::uint32_t>& points) {
 }  // namespace
 
 std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& samples, const Tile& tile,
-                               const Hits& hits, TileShade& out) {
+                               const Hits& hits, TileShade& out, bool roughly) {
     scene_ = &scene;
     by_quarters_ = scene.shadows().move();
     shaded_ = 0;
     clear(tile, samples.slots(), out.point_of_sample);
     out.colors.clear();
     const SampleVector* vectors = samples.cell(tile.cell_x(), tile.cell_y(), room_).data();
-    seen_.start(scene.frame(), cell_centre(scene.frame().view, tile.cell_x(), tile.cell_y()), vectors);
+    seen_.start(scene.frame(), cell_centre(scene.frame().view, tile.cell_x(), tile.cell_y()), vectors,
+                roughly ? kRoughLevel : 0);
 
     // Of what does not blur, pixels are the cells; there the mean of the samples is better than the middle.
     const bool in_cells = scene.options().rate == ShadingRate::kDecoupled;
@@ -97,7 +99,7 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
             const std::uint32_t triangle = samples_.triangle(i);
             const ShadedTriangle shaded(scene, triangle, samples.spp());
             const Run run{shaded, triangle, samples_.places(i), samples_.pixels(i)};
-            const bool cells = in_cells && !shaded.is_sharp();
+            const bool cells = in_cells && (roughly || !shaded.is_sharp());
             seen_.see(triangle, run.places, cells ? &shaded.cells() : nullptr);
             shadows_.start(scene.shadows(), triangle);
             if (cells) {
