@@ -27,7 +27,8 @@ enum class Aov : std::uint8_t {
     kVariance,
     kAlbedo,
     kOcclusion,
-    kSte  ///< MethodSettings::culling must name a test: the fast path keeps no account of pixels
+    kSte,  ///< MethodSettings::culling must name a test: the fast path keeps no account of pixels
+    kSamples
 };
 /// kGltf: Lambert under GGX, energy-conserving. kBurley: Burley's diffuse lobe (2012) and no compensation, which is
 /// what Blender's renderer had until 4.0; for comparisons with it.
@@ -48,6 +49,12 @@ struct ShutterPoint {
 struct ImageSettings {
     int width = 1280, height = 720;  ///< pixels, 1 to 16384
     int spp = 16;                    ///< samples per pixel, 1 to 4096
+    /// Set: each block of 4 x 4 pixels gets spp to max_spp samples per pixel, as many as bring the error (standard
+    /// deviation) of its pixels down to this, as far as a few samples that are not shown can tell. Of the root of
+    /// linear colour, exposure applied: 0.01 is a hundredth of what lies between black and white. Above 0 to 1. For
+    /// VisibilityMethod::kStochastic on the processor; a frame's samples cannot be stored.
+    std::optional<double> target_error;
+    int max_spp = 1024;  ///< spp to 4096
     Filter filter = Filter::kBlackmanHarris;
     std::optional<std::array<int, 4>> crop;  ///< X0, X1, Y0, Y1 in pixels, half open: equals that part of the whole
     double exposure = 0.0;                   ///< EV: colours are multiplied by 2^exposure

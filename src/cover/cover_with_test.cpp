@@ -142,6 +142,7 @@ class Walk {
     }
 
     void cover_block(int x, int y) {
+        if (!work_.tile.wants(x / kBlockSize, y / kBlockSize)) return;
         std::uint32_t lanes = 0;  // those whose pixel is kept
         const Rect rect = cut(x, y, kBlockSize);
         for (int py = rect.y0; py < rect.y1; ++py)

@@ -50,7 +50,7 @@ Visibility::Visibility(const Frame& frame, const SampleTable& samples, const Met
     : frame_(frame),
       samples_(samples),
       method_(method.visibility),
-      by_pixel_(grouping_for(frame) == Grouping::kStill && !samples.by_pixel(0, 0).x.empty()),
+      blurs_(grouping_for(frame) != Grouping::kStill),
       culling_(method.culling == "auto" ? Culling() : parse_culling(method.culling)) {
     if (method.backend == Backend::kGl)
         rasterizer_ = make_gl_rasterizer(frame, samples, method.culling, limits);
@@ -61,18 +61,19 @@ Visibility::Visibility(const Frame& frame, const SampleTable& samples, const Met
     tiles_ = tiles_over(limits, method.tile_size);
 }
 
-void Visibility::cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map) const {
-    hits.reset(samples_.slots());
+void Visibility::cover(const Tile& tile, const SampleTable& samples, Hits& hits, CoverCounts& counts,
+                       CoverMap* map) const {
+    hits.reset(samples.slots(), tile.blocks);
     if (tracer_) return tracer_->trace(tile, hits);
     if (rasterizer_) return rasterizer_->cover(tile, hits, counts, map);
-    const TileWork work{frame_, samples_, bins_->triangles(), bins_->tile(tile.x0, tile.y0), tile, map};
+    const TileWork work{frame_, samples, bins_->triangles(), bins_->tile(tile.x0, tile.y0), tile, map};
     if (method_ == VisibilityMethod::kMicropolygon)
         cover_micropolygons(work, hits, counts);
     else if (!culling_.empty())
         cover_with_test(work, culling_, hits, counts);
-    else if (samples_.pattern() != SamplePattern::kFree)
+    else if (samples.pattern() != SamplePattern::kFree)
         cover_shared(work, hits, counts);
-    else if (by_pixel_)
+    else if (!blurs_ && !samples.by_pixel(0, 0).x.empty())
         cover_still(work, hits, counts);
     else
         cover_vectors(work, hits, counts);

@@ -26,7 +26,12 @@ class Visibility {
 
     /// Fills the tile's hits. Thread-safe: each caller brings its own Hits and may share a map of the whole picture, in
     /// which tiles write different pixels.
-    void cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map = nullptr) const;
+    void cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map = nullptr) const {
+        cover(tile, samples_, hits, counts, map);
+    }
+    /// With other samples of make_samples() for the same method, which must be kStochastic on the processor. Blocks of
+    /// the tile that are not wanted are left as they are.
+    void cover(const Tile& tile, const SampleTable& samples, Hits& hits, CoverCounts& counts, CoverMap* map) const;
 
     /// 0 for a tracer and for a backend that bins on its own.
     std::int64_t binned_triangles() const { return bins_ ? static_cast<std::int64_t>(bins_->triangles().size()) : 0; }
@@ -35,7 +40,7 @@ class Visibility {
     const Frame& frame_;
     const SampleTable& samples_;
     VisibilityMethod method_;
-    bool by_pixel_;    ///< nothing blurs, and the samples are arranged for that
+    bool blurs_;
     Culling culling_;  ///< empty: the fast path
     std::optional<Bins> bins_;
     std::unique_ptr<const Tracer> tracer_;
