@@ -35,6 +35,10 @@ enum class Aov : std::uint8_t {
 enum class BrdfModel : std::uint8_t { kGltf, kBurley };
 /// What of a texture a shading point stands for: a point; its pixel; its pixel, motion and lens.
 enum class TextureFilter : std::uint8_t { kOff, kPixel, kFull };
+/// How surfaces that stop a part of the light are shown. kStochastic: by a part of the samples. kABuffer: by each
+/// sample, one over the other; for VisibilityMethod::kStochastic on the processor. Maps of shadows are stochastic in
+/// both.
+enum class Transparency : std::uint8_t { kStochastic, kABuffer };
 enum class ShadowMode : std::uint8_t { kOff, kStill, kMoving };
 enum class ShutterPosition : std::uint8_t { kStart, kCenter, kEnd };
 /// The edge of the picture that is exposed first; kNone: all of it at once.
@@ -149,6 +153,7 @@ struct MethodSettings {
     std::string shading = "decoupled";  ///< how often visible surfaces are shaded
     TextureFilter texture_filter = TextureFilter::kFull;
     BrdfModel brdf = BrdfModel::kGltf;
+    Transparency transparency = Transparency::kStochastic;
     ShadowMode shadows = ShadowMode::kMoving;  ///< kStill: of everything as it is at mid-shutter
     Sampler sampler = Sampler::kStratified;
     std::uint32_t seed = 0;  ///< of the sample pattern

@@ -310,6 +310,16 @@ void validate(const RenderSettings& settings) {
             refuse(
                 "--target-error: with --backend gl all pixels have the same number of samples; leave one of them out");
     }
+    if (settings.method.transparency == Transparency::kABuffer) {
+        if (settings.method.visibility != VisibilityMethod::kStochastic)
+            refuse(
+                fmt::format("--transparency a-buffer: not with --visibility {}, which finds one surface for a sample",
+                            name_of(settings.method.visibility)));
+        if (settings.method.backend != Backend::kCpu)
+            refuse("--transparency a-buffer: not with --backend gl, which finds one surface for a sample");
+        if (has(settings.image.aovs, Aov::kSte))
+            refuse("--aov ste: --transparency a-buffer keeps no account of pixels; leave one of them out");
+    }
     const auto refuse_shared = [&](const char* option, const char* what) {
         refuse(fmt::format("{}: with --visibility {} all {}; leave one of them out", option,
                            name_of(settings.method.visibility), what));
@@ -375,6 +385,7 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
                              : method.texture_filter == TextureFilter::kPixel ? "pixel"
                                                                               : "full";
     json["brdf"] = method.brdf == BrdfModel::kBurley ? "burley" : "gltf";
+    json["transparency"] = method.transparency == Transparency::kABuffer ? "a-buffer" : "stochastic";
     json["shadows"] = name_of(method.shadows);
     json["sampler"] = name_of(method.sampler);
     json["seed"] = method.seed;

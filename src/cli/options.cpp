@@ -231,6 +231,14 @@ void add_method_options(CLI::App& command, MethodSettings& method) {
                       "--shadows", text,
                       {{"off", ShadowMode::kOff}, {"still", ShadowMode::kStill}, {"moving", ShadowMode::kMoving}});
               });
+    add_value(command, group, "--transparency", "stochastic|a-buffer",
+              "Surfaces that let light through: shown by some samples and not by others (default), or all of them, one "
+              "over the other, by each sample: slower, without that noise",
+              [&](const std::string& text) {
+                  method.transparency = parse_choice<Transparency>(
+                      "--transparency", text,
+                      {{"stochastic", Transparency::kStochastic}, {"a-buffer", Transparency::kABuffer}});
+              });
     add_value(command, group, "--sampler", "stratified|sobol|blue-noise|independent",
               "Sample pattern (default stratified, the fastest)", [&](const std::string& text) {
                   method.sampler = parse_choice<Sampler>("--sampler", text,

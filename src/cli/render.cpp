@@ -73,6 +73,8 @@ void check_kind(const RenderCommand& command) {
             refuse("--samples: samples have neither --aov nor --sharp, and no parts of a frame; leave them out");
         if (command.settings.image.target_error)
             refuse("--samples: stored samples are as many for each pixel; leave --target-error out");
+        if (command.settings.method.transparency == Transparency::kABuffer)
+            refuse("--samples: a stored sample is of one surface; leave --transparency a-buffer out");
         if (command.samples.extension() != ".5ds")
             refuse(fmt::format("--samples {}: the name must end in .5ds", command.samples.string()));
     } else if (!command.dataset.empty()) {

@@ -173,6 +173,7 @@ int FrameTiles::delivered_pixels(const Tile& tile) const {
 }
 
 void FrameTiles::cover_and_shade(const Tile& tile, const SampleTable& samples, Worker& worker, bool to_decide) {
+    if (settings_.method.transparency == Transparency::kABuffer) return cover_and_shade_layers(tile, samples, worker);
     const auto start = Clock::now();
     CoverCounts counts;
     visibility_->cover(tile, samples, worker.hits, counts, tests_ && !to_decide ? &*tests_ : nullptr);
@@ -180,6 +181,18 @@ void FrameTiles::cover_and_shade(const Tile& tile, const SampleTable& samples, W
     costs_.shaded += worker.shader.shade(*shading_, samples, tile, worker.hits, worker.shade, to_decide);
     costs_.cover_ns += nanoseconds(covered - start);
     costs_.shade_ns += nanoseconds(Clock::now() - covered);
+    costs_.tested += counts.tested;
+    costs_.covered += counts.covered;
+}
+
+// Its time counts as shading: coverage comes in between.
+void FrameTiles::cover_and_shade_layers(const Tile& tile, const SampleTable& samples, Worker& worker) {
+    const auto start = Clock::now();
+    CoverCounts counts;
+    costs_.shaded +=
+        worker.layers.shade(*visibility_, *shading_, samples, tile, background_of(*frame_.scene, settings_.image),
+                            worker.hits, worker.shade, counts);
+    costs_.shade_ns += nanoseconds(Clock::now() - start);
     costs_.tested += counts.tested;
     costs_.covered += counts.covered;
 }

@@ -10,6 +10,7 @@
 #include <optional>
 #include <pentaprism/render.h>
 
+#include "render/layer_shading.h"
 #include "render/sample_budget.h"
 #include "render/visibility.h"
 #include "resolve/aov_film.h"
@@ -41,6 +42,7 @@ class FrameTiles {
     struct Worker {
         Hits hits;
         TileShader shader;
+        LayerShader layers;
         TileShade shade;
         TileAovs::Worker aovs;
         TileSums sums;
@@ -62,6 +64,7 @@ class FrameTiles {
     /// Leaves hits and colours in the worker. `to_decide`: samples that are not shown; their tests are not mapped and
     /// their colours are rough.
     void cover_and_shade(const Tile& tile, const SampleTable& samples, Worker& worker, bool to_decide);
+    void cover_and_shade_layers(const Tile& tile, const SampleTable& samples, Worker& worker);
     void add_samples(const Tile& tile, const SampleTable& samples, Worker& worker);
     /// Makes it when it is asked for first.
     const SampleTable& samples_of_level(std::size_t level);
