@@ -8,6 +8,7 @@ const int kMixedOpacity = 0, kSolid = 1, kClear = 2;            // OpacityClass
 const int kRepeat = 0, kMirroredRepeat = 1, kClamp = 2; // Wrap
 
 uniform int samples_per_pixel;
+uniform uint sample_seed;
 
 // Of a part: what of opacity_terms() is not a triangle's own.
 struct Surface {
@@ -117,7 +118,8 @@ uint permuted(uint i, uint n, uint seed) {
 // What alpha must exceed at a sample of a blended triangle.
 float opacity_threshold(uint triangle, ivec2 pixel, uint index) {
     uint place = mixed(mixed(uint(pixel.x)) + uint(pixel.y));
-    uint seed = mixed(place + mixed(triangle + 0x9e3779b9u)), n = uint(samples_per_pixel);
+    uint seed = mixed(place + mixed(triangle + 0x9e3779b9u) + mixed(sample_seed));
+    uint n = uint(samples_per_pixel);
     precise float offset = float(mixed(seed + index + 1u) >> 8) / 16777216.0;
     precise float sum = float(permuted(index % n, n, seed)) + offset;
     return min(quotient(sum, float(n)), 1.0 - 1.0 / 16777216.0);

@@ -10,6 +10,7 @@ void set_uniforms(const Program& program, const PassData& data, const Region& re
     program.set("region_cell_columns", region.cell_columns);
     program.set("pass_slots", count);
     program.set("samples_per_pixel", data.table.spp());
+    program.set("sample_seed", data.table.seed());
     program.set("w_near", view.w_near());
     program.set("lens_ratio", view.lens.ratio);
     program.set("z_near", static_cast<float>(view.depth_near));
