@@ -12,11 +12,11 @@ namespace {
 constexpr GLuint kPointsBlock = 1, kDrawsBlock = 4, kRecordsBlock = 5, kCountsBlock = 6, kEntriesBlock = 7;
 constexpr int kTile = 8, kCellTiles = kCellSize / kTile;
 constexpr std::uint32_t kGroup = 64;  // invocations of the shaders that sort, and of a tile
-// Pairs of triangle and sample that an invocation is asked at once: longer lists take several dispatches. Drivers stop
-// what takes long: on a card a watchdog, and Mesa's llvmpipe leaves a shader's loops, all taken together, after 65535
-// turns, without an error. No pair has more than 126: those of the culling test "hull" are about 70.
+// Pairs of triangle and sample that an invocation is asked at once, with one culling test: longer lists take several
+// dispatches. Drivers stop what takes long: on a card a watchdog, and Mesa's llvmpipe leaves a shader's loops, all
+// taken together, after 65535 turns, without an error. No pair has more than 126 for a test: those of "hull" are
+// about 75.
 constexpr std::uint32_t kMostPairs = 512;
-static_assert(kMostPairs >= kGroup * TilePass::kMostSlots);
 // What is sorted at once, 64 MB of each: more triangles take several batches, longer lists several ranges of tiles. A
 // tile has each record once at most, so that a list of its own always fits.
 constexpr std::uint32_t kMostRecords = 1 << 22, kMostEntries = 1 << 24;
@@ -63,6 +63,7 @@ TilePass::TilePass(Device& device, const PassData& data, const Culling& culling,
       bound_(sorting_program(device, "gl/tile_bound.comp.glsl")),
       fill_(sorting_program(device, "gl/tile_fill.comp.glsl")),
       cover_(cover_program(device, culling)),
+      most_pairs_(kMostPairs / std::max(1u, static_cast<std::uint32_t>(culling.size()))),
       most_records_(room_for(device, sizeof(glm::uvec4), kMostRecords)),
       most_entries_(room_for(device, sizeof(std::uint32_t), kMostEntries)) {
     plan_draws();
@@ -157,7 +158,8 @@ PixelRect TilePass::tiles_longer_than(std::uint32_t length, const TileRange& ran
 }
 
 void TilePass::cover(const TileRange& range, const Region& region, int count) {
-    const std::uint32_t step = kMostPairs / static_cast<std::uint32_t>(count) / kGroup * kGroup;
+    const std::uint32_t most = std::max(1u, most_pairs_ / static_cast<std::uint32_t>(count)),
+                        step = most < kGroup ? most : most / kGroup * kGroup;
     cover_.set("some_tiles", range.from, range.to);
     cover_.use();
     for (std::uint32_t done = 0; done < range.longest; done += step) {

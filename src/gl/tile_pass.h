@@ -44,7 +44,7 @@ class TilePass : public Pass {
 
     PassData data_;
     const Program &bound_, &fill_, &cover_;
-    std::uint32_t most_records_, most_entries_;
+    std::uint32_t most_pairs_, most_records_, most_entries_;
     std::vector<Draw> draws_;
     std::vector<Batch> batches_;
     Buffer draw_buffer_, records_, counts_, entries_;

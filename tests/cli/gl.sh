@@ -18,6 +18,12 @@ succeeds "${picture[@]}" -o cpu.exr
 succeeds "${picture[@]}" -o gl.exr --backend gl --stats gl.json
 check "the file is the processor's, byte for byte" cmp cpu.exr gl.exr
 check "the statistics name the device" json gl.json 'd["device"] and d["tested"] >= d["covered"] > 0'
+check "and the pipeline" json gl.json 'd["gl_pipeline"] == "compute"'
+for pipeline in geometry compute; do
+    succeeds "${picture[@]}" -o again.exr --backend gl --gl-pipeline $pipeline --stats again.json
+    check "$pipeline gives that picture" cmp cpu.exr again.exr
+    check "and its name" json again.json "d['gl_pipeline'] == '$pipeline'"
+done
 for threads in 1 4; do
     succeeds "${picture[@]}" -o again.exr --backend gl --culling dual-space -t "$threads"
     check "with $threads threads, too" cmp cpu.exr again.exr
@@ -28,6 +34,8 @@ check "bench rows are gl's and lose nothing" json out 'all(r["backend"] == "gl-c
 
 refuses 2 "--culling half-space: not with --backend gl, which has auto, .*none" render builtin:cubes -o a.png --backend gl --culling half-space
 refuses 2 "--culling bbox@bucket: not with --backend gl" render builtin:cubes -o a.png --backend gl --culling bbox@bucket
+refuses 2 "--gl-pipeline: .*geometry" render builtin:cubes -o a.png --backend gl --gl-pipeline tiles
+refuses 2 "--gl-pipeline: only --backend gl has one" render builtin:cubes -o a.png --gl-pipeline compute
 refuses 2 "--backend gl: --visibility raytrace" render builtin:cubes -o a.png --backend gl --visibility raytrace
 __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null refuses 5 "--backend gl: .*install" render builtin:cubes -o a.png --backend gl
 if grep -q Mesa gl.json; then

@@ -61,6 +61,7 @@ TEST_F(GlBackend, LosesNothingWhereListsDoNotFitAtOnce) {
 // Drivers may leave long loops: 20000 triangles in a tile, and a triangle in 68400 tiles.
 TEST_F(GlBackend, LosesNothingInLongLists) {
     expect_same(stack_of_squares(10000, 0.01f), settings_of(16, 16, 9), 0, "none");
+    expect_same(stack_of_squares(300, 0.2f), settings_of(16, 16, 9), 0, "hull@tile+hull+clip-space");
     const PosedPicture wide = pose_picture(stack_of_squares(1, 3.0f), settings_of(2400, 1800, 1), 0);
     const Seen cpu = look(wide, By::kCpu, "none"), gl = look(wide, By::kCompute, "none");
     EXPECT_EQ(gl.counts.covered, 2400 * 1800);
