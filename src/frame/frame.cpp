@@ -12,7 +12,7 @@ namespace pentaprism {
 namespace {
 
 constexpr double kMaxError = 0.1;  // pixels between the true path and its straight segments
-constexpr int kMaxSegments = 32;
+constexpr int kMaxSegments = 64;
 
 // The scene and the camera at one shutter time.
 struct Moment {

@@ -73,7 +73,7 @@ struct Frame {
     glm::vec3 in_source(std::uint32_t triangle, const glm::vec3& barycentrics) const;
 };
 
-/// Poses the scene. Knots are uniform; `settings.motion_segments` of them or, if 0, as many (a power of two up to 32
+/// Poses the scene. Knots are uniform; `settings.motion_segments` of them or, if 0, as many (a power of two up to 64
 /// for each placement) as keep straight segments within 0.1 pixel of the true paths. Triangles with a coordinate that
 /// is not finite or above 1e12 are dropped at setup (bound/), not here.
 Frame pose_frame(const Scene& scene, const View& view, std::span<const Index> animations,
