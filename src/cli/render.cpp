@@ -131,8 +131,7 @@ std::string to_text(const Json& json) {
 
 // Leaves out the frames that need no work. All are looked at before the first is rendered: a directory of other
 // settings is refused at once, and the time left counts what is left.
-std::vector<std::int64_t> frames_to_do(const RenderCommand& command, const FrameOutput& output,
-                                       ProgressReporter& progress) {
+std::vector<std::int64_t> frames_to_do(const RenderCommand& command, FrameOutput& output, ProgressReporter& progress) {
     const std::vector<std::int64_t> all = command.my_frames();
     if (!command.leaves_existing()) return all;
     if (command.resume) output.check_resumable(all);
@@ -162,7 +161,7 @@ void share_with_ranks(RenderCommand& command) {
 }
 
 std::unique_ptr<FrameOutput> make_output(const RenderCommand& command, const FrameSource& source) {
-    if (!command.dataset.empty()) return make_dataset_output(source, command.dataset, command.shard);
+    if (!command.dataset.empty()) return make_dataset_output(source, command.dataset, command.frames, command.shard);
     if (!command.samples.empty()) return make_samples_output(source, command.samples);
     if (command.shards_a_frame())
         return command.ranks.alone() ? make_shard_output(source, command.out, *command.shard)
@@ -193,7 +192,9 @@ int render(RenderCommand& command) {
     Json all_stats = Json::array();
     ProgressReporter progress(command.verbosity, command.my_frames().size());
     Renderer renderer(scene);
-    for (const std::int64_t frame : frames_to_do(command, *output, progress)) {
+    const std::vector<std::int64_t> frames = frames_to_do(command, *output, progress);
+    output->begin(frames);
+    for (const std::int64_t frame : frames) {
         if (command.leaves_existing() && output->exists(frame)) {  // another process was faster
             progress.skip_frame(frame, output->name(frame));
             continue;
