@@ -6,7 +6,7 @@ python=
 for candidate in python3 /usr/bin/python3; do
     "$candidate" -c 'import numpy, OpenImageIO' 2>/dev/null && python=$candidate && break
 done
-[[ -n $python ]] || { echo "skipped: no OpenImageIO for Python (packaging/apt-tests.txt)"; exit 77; }
+[[ -n $python ]] || { echo "skipped: no OpenImageIO for Python (packaging/apt-readers.txt)"; exit 77; }
 
 # PENTAPRISM_SCENES adds a scene of others, with names of others.
 scenes=(builtin:cubes builtin:fairy-forest)
