@@ -2,12 +2,13 @@
 """How long a sequence takes on N machines: a model fed by measured frames (docs/use/farm.md).
 
     for run in 1 2 3; do for s in 16 4 1; do
-        pentaprism render race.glb -o 'f.####.exr' -f 1-96x8 -s $s --stats race-$s-$run.json
+        pentaprism render race.glb -o 'f.####.exr' -f 1-89x8 -s $s --stats race-$s-$run.json
     done; done
     python3 bench/farm_model.py race=race-16-1.json,race-16-2.json,...,race-1-3.json --plot farm.svg
 
 The frames with the most samples are the job; those with fewer tell what a frame costs with a part of its samples. Of a
 frame that was measured several times the fastest counts: whatever else the machine did can only have made it slower.
+Where it never was idle, measure with -t 1 and count processor time (--cpu).
 
 Each machine starts up, reads the scene and takes its share. Machines differ in speed: a lognormal spread, and a few that
 are much slower. They fail by chance (exponential), lose what is under way, as --resume does, and come back. All files
@@ -35,29 +36,33 @@ HOUR = 3600.0
 class Frame:
     """What one frame costs, in seconds of the machine that it was measured on."""
 
-    def __init__(self, stats):
+    def __init__(self, stats, cpu):
         times = stats["times_ms"]
-        self.total = times["total"] / 1000.0  # the picture is written meanwhile
-        self.setup = sum(times[stage] for stage in SETUP) / 1000.0
+        self.total = time_of(stats, cpu) / 1000.0  # the picture is written meanwhile
+        self.setup = self.total * sum(times[stage] for stage in SETUP) / times["total"]
         self.pixels = stats["width"] * stats["height"]
+
+
+def time_of(stats, cpu):
+    return stats["cpu_ms"] if cpu else stats["times_ms"]["total"]
 
 
 class Job:
     """The frames of a sequence, and the line time = fixed + slope * samples per pixel that its measurements lie on."""
 
-    def __init__(self, name, files):
+    def __init__(self, name, files, cpu=False):
         fastest = {}  # by samples per pixel, then by frame
         for file in files:
             with open(file) as stream:
                 stats = json.load(stream)
             for one in stats if isinstance(stats, list) else [stats]:
                 frames = fastest.setdefault(one["spp"], {})
-                frames[one["frame"]] = min(one, frames.get(one["frame"], one), key=lambda s: s["times_ms"]["total"])
+                frames[one["frame"]] = min(one, frames.get(one["frame"], one), key=lambda s: time_of(s, cpu))
         self.name, self.spp = name, max(fastest)
         job = fastest[self.spp]
-        self.measured = [Frame(job[number]) for number in sorted(job)]
+        self.measured = [Frame(job[number], cpu) for number in sorted(job)]
         self.load = min(s["times_ms"]["load"] for s in job.values()) / 1000.0
-        means = sorted((spp, mean(Frame(s).total for s in frames.values())) for spp, frames in fastest.items())
+        means = sorted((spp, mean(Frame(s, cpu).total for s in frames.values())) for spp, frames in fastest.items())
         self.share_of_fixed = fixed_part(means) / means[-1][1] if len(means) > 1 else None
         self.mean = means[-1][1]
 
@@ -232,6 +237,7 @@ def plot(name, jobs, results, options):
 def parse(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("jobs", nargs="+", metavar="NAME=FILE[,FILE...]", help="what render --stats wrote for some frames")
+    parser.add_argument("--cpu", action="store_true", help="processor time instead of the time that passed: measured with -t 1")
     parser.add_argument("--frames", type=int, default=10000, help="in the sequence; the measured ones are spread over it")
     parser.add_argument("--ranks", default="1,10,100,1000", help="numbers of machines, with commas")
     parser.add_argument("--start", type=float, default=5.0, help="seconds until a process runs")
@@ -267,7 +273,7 @@ def parse(arguments=None):
 def main():
     options = parse()
     try:
-        jobs = [Job(name, files.split(",")) for name, files in (job.split("=", 1) for job in options.jobs)]
+        jobs = [Job(name, files.split(","), options.cpu) for name, files in (job.split("=", 1) for job in options.jobs)]
     except (OSError, ValueError, KeyError, IndexError, TypeError) as error:
         sys.exit(f"farm_model.py: error: not what render --stats wrote: {error}")
     results = {}

@@ -14,6 +14,7 @@
 #include <pentaprism/randomize.h>
 #include <pentaprism/render.h>
 #include <pentaprism/shard.h>
+#include <sys/resource.h>
 
 #include "cli/commands.h"
 #include "cli/frame_output.h"
@@ -34,6 +35,16 @@ using Clock = std::chrono::steady_clock;
 
 double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// Of this process, all its threads.
+double processor_milliseconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto ms = [](const timeval& time) {
+        return 1e3 * static_cast<double>(time.tv_sec) + 1e-3 * static_cast<double>(time.tv_usec);
+    };
+    return ms(usage.ru_utime) + ms(usage.ru_stime);
 }
 
 struct RenderCommand {
@@ -101,7 +112,8 @@ void check_names(const RenderCommand& command) {
     check_numbered(command.samples, "--samples");
 }
 
-Json to_json(const RenderStats& stats, const RenderCommand& command, std::int64_t frame, const std::string& scene) {
+Json to_json(const RenderStats& stats, double cpu_ms, const RenderCommand& command, std::int64_t frame,
+             const std::string& scene) {
     Json json;
     json["scene"] = scene;
     json["frame"] = frame;
@@ -111,6 +123,7 @@ Json to_json(const RenderStats& stats, const RenderCommand& command, std::int64_
     json["height"] = command.settings.image.height;
     json["spp"] = command.settings.image.spp;
     json["times_ms"] = stats.times_ms;
+    json["cpu_ms"] = cpu_ms;
     json["triangles"] = stats.triangles;
     json["moving_triangles"] = stats.moving_triangles;
     json["samples"] = stats.samples;
@@ -200,10 +213,12 @@ int render(RenderCommand& command) {
             continue;
         }
         progress.begin_frame(frame);
+        const double cpu_start = processor_milliseconds();
         RenderStats stats = output->render(renderer, frame, progress.callback());
+        const double cpu_ms = processor_milliseconds() - cpu_start;
         stats.times_ms["load"] = load_ms;
         if (!command.stats.empty() && (command.ranks.first() || !command.shards_a_frame())) {
-            Json json = to_json(stats, command, frame, scene.name);
+            Json json = to_json(stats, cpu_ms, command, frame, scene.name);
             if (stats_for_each_frame) write_text_file(frame_file(command.stats, frame), to_text(json));
             all_stats.push_back(std::move(json));
         }
