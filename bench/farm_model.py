@@ -249,7 +249,7 @@ def parse(arguments=None):
     parser.add_argument("--disk", type=float, default=1000.0, help="MB a second of the shared file system")
     parser.add_argument("--disk-ops", type=float, default=5000.0, help="its opens, syncs and renames a second")
     parser.add_argument("--latency", type=float, default=0.02, help="seconds that a sync takes when nobody else asks")
-    parser.add_argument("--join", type=float, default=500.0, help="MB of parts a second that one process takes and adds")
+    parser.add_argument("--join", type=float, default=200.0, help="MB of parts a second that one process takes and adds")
     parser.add_argument("--scene-mb", type=float, default=3.0, help="that each process reads")
     parser.add_argument("--file-mb", type=float, default=4.0, help="of a frame's files")
     parser.add_argument("--files", type=int, default=1, help="of a frame; a data set has 18")
