@@ -27,13 +27,18 @@ enum class Aov : std::uint8_t {
     kVariance,
     kAlbedo,
     kOcclusion,
-    kSte  ///< MethodSettings::culling must name a test: the fast path keeps no account of pixels
+    kSte,  ///< MethodSettings::culling must name a test: the fast path keeps no account of pixels
+    kSamples
 };
 /// kGltf: Lambert under GGX, energy-conserving. kBurley: Burley's diffuse lobe (2012) and no compensation, which is
 /// what Blender's renderer had until 4.0; for comparisons with it.
 enum class BrdfModel : std::uint8_t { kGltf, kBurley };
 /// What of a texture a shading point stands for: a point; its pixel; its pixel, motion and lens.
 enum class TextureFilter : std::uint8_t { kOff, kPixel, kFull };
+/// How surfaces that stop a part of the light are shown. kStochastic: by a part of the samples. kABuffer: by each
+/// sample, one over the other; for VisibilityMethod::kStochastic on the processor. Maps of shadows are stochastic in
+/// both.
+enum class Transparency : std::uint8_t { kStochastic, kABuffer };
 enum class ShadowMode : std::uint8_t { kOff, kStill, kMoving };
 enum class ShutterPosition : std::uint8_t { kStart, kCenter, kEnd };
 /// The edge of the picture that is exposed first; kNone: all of it at once.
@@ -48,6 +53,12 @@ struct ShutterPoint {
 struct ImageSettings {
     int width = 1280, height = 720;  ///< pixels, 1 to 16384
     int spp = 16;                    ///< samples per pixel, 1 to 4096
+    /// Set: each block of 4 x 4 pixels gets spp to max_spp samples per pixel, as many as bring the error (standard
+    /// deviation) of its pixels down to this, as far as a few samples that are not shown can tell. Of the root of
+    /// linear colour, exposure applied: 0.01 is a hundredth of what lies between black and white. Above 0 to 1. For
+    /// VisibilityMethod::kStochastic on the processor; a frame's samples cannot be stored.
+    std::optional<double> target_error;
+    int max_spp = 1024;  ///< spp to 4096
     Filter filter = Filter::kBlackmanHarris;
     std::optional<std::array<int, 4>> crop;  ///< X0, X1, Y0, Y1 in pixels, half open: equals that part of the whole
     double exposure = 0.0;                   ///< EV: colours are multiplied by 2^exposure
@@ -142,6 +153,7 @@ struct MethodSettings {
     std::string shading = "decoupled";  ///< how often visible surfaces are shaded
     TextureFilter texture_filter = TextureFilter::kFull;
     BrdfModel brdf = BrdfModel::kGltf;
+    Transparency transparency = Transparency::kStochastic;
     ShadowMode shadows = ShadowMode::kMoving;  ///< kStill: of everything as it is at mid-shutter
     Sampler sampler = Sampler::kStratified;
     std::uint32_t seed = 0;  ///< of the sample pattern

@@ -8,6 +8,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 namespace pentaprism {
 namespace {
@@ -58,6 +59,10 @@ void parallel_ranges(std::size_t n, std::size_t grain, const std::function<void(
         tbb::blocked_range<std::size_t>(0, n, std::max<std::size_t>(1, grain)),
         [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); },
         tbb::simple_partitioner());
+}
+
+void isolated(const std::function<void()>& body) {
+    tbb::this_task_arena::isolate(body);
 }
 
 }  // namespace pentaprism

@@ -19,4 +19,8 @@ void parallel_for(std::size_t n, const std::function<void(std::size_t)>& body);
 /// The same over ranges [begin, end) of at most `grain` indices, in any order.
 void parallel_ranges(std::size_t n, std::size_t grain, const std::function<void(std::size_t, std::size_t)>& body);
 
+/// Calls body(). While its loops wait for other threads, this thread takes up nothing from outside them: so inside a
+/// loop's body, body() may be called with a lock held.
+void isolated(const std::function<void()>& body);
+
 }  // namespace pentaprism

@@ -174,20 +174,15 @@ HullPolygon hull_polygon(const LocalTriangle& T, const SegmentDomain& d, const P
     std::array<Vec2, 6> on_screen;
     for (int k = 0; k < 6; ++k) on_screen[k] = {p.x[k] / p.w[k], p.y[k] / p.w[k]};
     const std::array<Vec2, 6> hull = hull_of_six(on_screen);
-    const double half_u = 0.5 * (double{d.u1} - d.u0), half_v = 0.5 * (double{d.v1} - d.v0),
-                 middle_u = 0.5 * (double{d.u0} + d.u1), middle_v = 0.5 * (double{d.v0} + d.v1);
     for (int k = 0; k < 6; ++k) {
         const Vec2 &a = hull[k], &b = hull[(k + 1) % 6];
         const double length = std::sqrt(squared_length({b.x - a.x, b.y - a.y}));
         if (!(length > 0)) continue;
         // Any direction gives a bound, so it may be rounded; then the farthest point in it, over all of the lens.
         const float nx = static_cast<float>((b.y - a.y) / length), ny = static_cast<float>((a.x - b.x) / length);
+        const double of_lens = std::sqrt(squared_length({double{d.u1} * nx, double{d.v1} * ny}));
         double h = -kInfinity;
-        for (int j = 0; j < 6; ++j) {
-            const double along = nx * (p.x[j] + middle_u * p.c[j]) + ny * (p.y[j] + middle_v * p.c[j]);
-            const double reach = (half_u * std::abs(nx) + half_v * std::abs(ny)) * std::abs(p.c[j]);
-            h = std::max(h, (along + reach) / p.w[j]);
-        }
+        for (int j = 0; j < 6; ++j) h = std::max(h, (nx * p.x[j] + ny * p.y[j] + of_lens * std::abs(p.c[j])) / p.w[j]);
         const double slack = 16.0 * kUnitRoundoff * (std::abs(nx) * p.scale_x + std::abs(ny) * p.scale_y) / least_w(p);
         add_side(polygon, nx, ny, h + slack);
     }

@@ -139,19 +139,17 @@ bool hull_meets(LocalTriangle T, SegmentDomain d, Footprint f) {
         hull[k] = place;
     }
     make_hull(hull);
-    precise double half_u = 0.5lf * (double(d.u1) - d.u0), half_v = 0.5lf * (double(d.v1) - d.v0),
-                   middle_u = 0.5lf * (double(d.u0) + d.u1), middle_v = 0.5lf * (double(d.v0) + d.v1);
     for (int k = 0; k < 6; ++k) {
         dvec2 a = hull[k], b = hull[(k + 1) % 6];
         double length_of_side = sqrt(squared_length(b - a));
         if (!(length_of_side > 0.0lf)) continue;
         precise double across_x = (b.y - a.y) / length_of_side, across_y = (a.x - b.x) / length_of_side;
         float nx = float(across_x), ny = float(across_y);
+        precise double of_u = double(d.u1) * nx, of_v = double(d.v1) * ny;
+        double of_lens = sqrt(squared_length(dvec2(of_u, of_v)));
         double h = -kHuge;
         for (int j = 0; j < 6; ++j) {
-            precise double along = nx * (p.x[j] + middle_u * p.c[j]) + ny * (p.y[j] + middle_v * p.c[j]);
-            precise double reach = (half_u * abs(nx) + half_v * abs(ny)) * abs(p.c[j]);
-            precise double farthest = (along + reach) / p.w[j];
+            precise double farthest = (nx * p.x[j] + ny * p.y[j] + of_lens * abs(p.c[j])) / p.w[j];
             h = max(h, farthest);
         }
         precise double slack =

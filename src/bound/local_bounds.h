@@ -51,7 +51,7 @@ struct HullPolygon {
 
 /// The hull of the six points on the screen, each side moved out by the largest circle of confusion in its direction
 /// (docs/develop/algorithms.md 3.5); the sides of local_bounds() among them, which are all there is for a triangle that
-/// reaches the camera plane.
+/// reaches the camera plane. `domain`: of the whole lens, whose samples lie in the ellipse that touches its four sides.
 HullPolygon hull_polygon(const LocalTriangle& triangle, const SegmentDomain& domain, const PictureRect& picture);
 
 }  // namespace pentaprism

@@ -42,6 +42,12 @@ void check(const ImageSettings& image) {
     check_whole("--resolution", image.width, 1, 16384);
     check_whole("--resolution", image.height, 1, 16384);
     check_whole("--spp", image.spp, 1, 4096);
+    check_above("--target-error", image.target_error, 0.0);
+    check_from("--target-error", image.target_error, 0.0, 1.0);
+    check_whole("--max-spp", image.max_spp, 1, 4096);
+    if (image.target_error && image.max_spp < image.spp)
+        refuse(fmt::format("--max-spp {}: it is less than --spp {}, the fewest samples of a pixel", image.max_spp,
+                           image.spp));
     check_from("--exposure", image.exposure, -100.0, 100.0);
     check_from("flow step", image.flow_step, 0.0, 1e6);
     if (image.background) {
@@ -294,6 +300,26 @@ void validate(const RenderSettings& settings) {
                                                                    : nullptr;
         if (shaped) refuse(fmt::format("{}: rays are straight, so --visibility raytrace cannot have it", shaped));
     }
+    if (settings.image.target_error) {
+        if (settings.method.visibility != VisibilityMethod::kStochastic)
+            refuse(
+                fmt::format("--target-error: with --visibility {} all pixels have the same number of samples; leave "
+                            "one of them out",
+                            name_of(settings.method.visibility)));
+        if (settings.method.backend != Backend::kCpu)
+            refuse(
+                "--target-error: with --backend gl all pixels have the same number of samples; leave one of them out");
+    }
+    if (settings.method.transparency == Transparency::kABuffer) {
+        if (settings.method.visibility != VisibilityMethod::kStochastic)
+            refuse(
+                fmt::format("--transparency a-buffer: not with --visibility {}, which finds one surface for a sample",
+                            name_of(settings.method.visibility)));
+        if (settings.method.backend != Backend::kCpu)
+            refuse("--transparency a-buffer: not with --backend gl, which finds one surface for a sample");
+        if (has(settings.image.aovs, Aov::kSte))
+            refuse("--aov ste: --transparency a-buffer keeps no account of pixels; leave one of them out");
+    }
     const auto refuse_shared = [&](const char* option, const char* what) {
         refuse(fmt::format("{}: with --visibility {} all {}; leave one of them out", option,
                            name_of(settings.method.visibility), what));
@@ -311,6 +337,8 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
     json["scene_hash"] = hash;
     json["resolution"] = {image.width, image.height};
     json["spp"] = image.spp;
+    put(json, "target_error", image.target_error);
+    if (image.target_error) json["max_spp"] = image.max_spp;
     json["filter"] = name_of(image.filter);
     put(json, "crop", image.crop);
     json["exposure"] = image.exposure;
@@ -357,6 +385,7 @@ std::string settings_json(const RenderSettings& settings, const std::string& sce
                              : method.texture_filter == TextureFilter::kPixel ? "pixel"
                                                                               : "full";
     json["brdf"] = method.brdf == BrdfModel::kBurley ? "burley" : "gltf";
+    json["transparency"] = method.transparency == Transparency::kABuffer ? "a-buffer" : "stochastic";
     json["shadows"] = name_of(method.shadows);
     json["sampler"] = name_of(method.sampler);
     json["seed"] = method.seed;

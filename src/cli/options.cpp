@@ -25,6 +25,15 @@ void add_image_options(CLI::App& command, ImageSettings& image) {
               [&](const std::string& text) { std::tie(image.width, image.height) = parse_size("--resolution", text); });
     add_value(command, group, "-s,--spp", "N", "Samples per pixel, 1 to 4096 (default 16)",
               [&](const std::string& text) { image.spp = static_cast<int>(parse_whole("--spp", text, 1, 4096)); });
+    CLI::Option* target = add_value(
+        command, group, "--target-error", "E",
+        "Give each 4x4 pixels as many samples, --spp to --max-spp, as bring their error down to E; 0.01 is a hundredth "
+        "of the way from black to white (default: --spp everywhere)",
+        [&](const std::string& text) { image.target_error = parse_number("--target-error", text); });
+    add_value(
+        command, group, "--max-spp", "N", "The most samples per pixel that --target-error gives (default 1024)",
+        [&](const std::string& text) { image.max_spp = static_cast<int>(parse_whole("--max-spp", text, 1, 4096)); })
+        ->needs(target);
     add_value(command, group, "--filter", "box|tent|gaussian|blackman-harris",
               "Reconstruction filter (default blackman-harris, radius 1.5 pixels)", [&](const std::string& text) {
                   image.filter = parse_choice<Filter>("--filter", text,
@@ -221,6 +230,14 @@ void add_method_options(CLI::App& command, MethodSettings& method) {
                   method.shadows = parse_choice<ShadowMode>(
                       "--shadows", text,
                       {{"off", ShadowMode::kOff}, {"still", ShadowMode::kStill}, {"moving", ShadowMode::kMoving}});
+              });
+    add_value(command, group, "--transparency", "stochastic|a-buffer",
+              "Surfaces that let light through: shown by some samples and not by others (default), or all of them, one "
+              "over the other, by each sample: slower, without that noise",
+              [&](const std::string& text) {
+                  method.transparency = parse_choice<Transparency>(
+                      "--transparency", text,
+                      {{"stochastic", Transparency::kStochastic}, {"a-buffer", Transparency::kABuffer}});
               });
     add_value(command, group, "--sampler", "stratified|sobol|blue-noise|independent",
               "Sample pattern (default stratified, the fastest)", [&](const std::string& text) {

@@ -82,6 +82,10 @@ void check_kind(const RenderCommand& command) {
             refuse("--samples: instead of --output and --dataset; `pentaprism refocus` makes pictures of them");
         if (has_aovs || command.sharp || command.shards_a_frame())
             refuse("--samples: samples have neither --aov nor --sharp, and no parts of a frame; leave them out");
+        if (command.settings.image.target_error)
+            refuse("--samples: stored samples are as many for each pixel; leave --target-error out");
+        if (command.settings.method.transparency == Transparency::kABuffer)
+            refuse("--samples: a stored sample is of one surface; leave --transparency a-buffer out");
         if (command.samples.extension() != ".5ds")
             refuse(fmt::format("--samples {}: the name must end in .5ds", command.samples.string()));
     } else if (!command.dataset.empty()) {
@@ -127,6 +131,8 @@ Json to_json(const RenderStats& stats, double cpu_ms, const RenderCommand& comma
     json["triangles"] = stats.triangles;
     json["moving_triangles"] = stats.moving_triangles;
     json["samples"] = stats.samples;
+    if (stats.pixels > 0) json["mean_spp"] = static_cast<double>(stats.samples) / static_cast<double>(stats.pixels);
+    if (command.settings.image.target_error) json["pilot_samples"] = stats.pilot_samples;
     json["tested"] = stats.tested;
     json["covered"] = stats.covered;
     json["ste"] = stats.ste();

@@ -4,8 +4,11 @@
 //
 // What is found is the triangle, not the micropolygon: its number, and the surface's opacity at the triangle's own
 // barycentric coordinates. So everything after visibility is the same as for the other methods. Depths are those of the
-// micropolygon's own plane, the same up to rounding. Triangles come roughly front to back, and pieces that lie behind
-// all that a block of 4x4 pixels shows are left out there.
+// micropolygon's own plane, the same up to rounding. Triangles come front to back.
+//
+// Culling has two levels (docs/develop/algorithms.md 7.2). A group of about 16 micropolygons is bounded for each
+// stratum first: blocks of 4x4 pixels that it does not touch, or in which it lies behind all that they show, and strata
+// that are left with no block are not asked about again by any of its micropolygons. Then each micropolygon is.
 
 #include <algorithm>
 #include <array>
@@ -27,6 +30,29 @@ struct SlotBlocks {
     std::uint64_t blocks;
 };
 
+constexpr std::uint64_t kAllBlocks = ~std::uint64_t{0};
+
+// The strata that micropolygons are asked about, and the blocks for each of them.
+struct Asked {
+    std::vector<std::uint16_t> strata;
+    std::vector<Domain> domains;        // of each
+    std::vector<std::uint64_t> blocks;  // of each
+    std::uint64_t all_blocks = 0;       // of any
+
+    void clear() {
+        strata.clear();
+        domains.clear();
+        blocks.clear();
+        all_blocks = 0;
+    }
+    void add(std::size_t stratum, const Domain& domain, std::uint64_t of_stratum) {
+        strata.push_back(static_cast<std::uint16_t>(stratum));
+        domains.push_back(domain);
+        blocks.push_back(of_stratum);
+        all_blocks |= of_stratum;
+    }
+};
+
 class MicropolygonTile {
   public:
     MicropolygonTile(const TileWork& work, Hits& hits, CoverCounts& counts)
@@ -41,6 +67,8 @@ class MicropolygonTile {
           slots_(work.samples.slots()),
           by_stratum_(domains_.size()),
           boxes_(domains_.size()) {
+        for (std::size_t stratum = 0; stratum < domains_.size(); ++stratum)
+            all_.add(stratum, domains_[stratum], kAllBlocks);
         for (const SampleTable::Stratum& s : work.samples.strata(work.tile.cell_x(), work.tile.cell_y()))
             by_stratum_[s.stratum].push_back({s.slot, s.blocks});
         const Tile& tile = work.tile;
@@ -61,9 +89,14 @@ class MicropolygonTile {
         int until_update = kBetweenUpdates;
         for (const std::uint32_t entry : order) {
             const BinnedTriangle& binned = work_.triangles[entry];
-            if (shown_blocks(~std::uint64_t{0}, binned.nearest_w) == 0) continue;
+            if (shown_blocks(kAllBlocks, binned.nearest_w) == 0) continue;
             const LocalTriangle triangle = localize(work_.frame, binned.triangle, binned.segment, centre_);
-            dicer_.dice(triangle, window_, [&](const Micropolygon& micro) { cover(triangle, micro); });
+            Dicer::Visitor visitor;
+            visitor.enter_group = [&](const Micropolygon& group) { return enter_group(group); };
+            visitor.visit = [&](const Micropolygon& micro, bool in_group) {
+                cover(triangle, micro, in_group ? group_ : all_);
+            };
+            dicer_.dice(triangle, window_, visitor);
             if (--until_update > 0) continue;
             update_farthest();
             until_update = kBetweenUpdates;
@@ -91,12 +124,26 @@ class MicropolygonTile {
         }
     }
 
-    void cover(const LocalTriangle& triangle, const Micropolygon& micro) {
-        const std::uint64_t shown = shown_blocks(blocks_of(micro.box), micro.nearest_w);
+    // Which strata and blocks a group may touch. False: none.
+    bool enter_group(const Micropolygon& group) {
+        group_.clear();
+        const std::uint64_t shown = shown_blocks(blocks_of(group.box), group.nearest_w);
+        if (shown == 0) return false;
+        kernels_.strata_boxes(group, domains_, boxes_.data());
+        for (std::size_t stratum = 0; stratum < domains_.size(); ++stratum) {
+            const std::uint64_t blocks = blocks_of(boxes_[stratum]) & shown;
+            if (blocks != 0) group_.add(stratum, domains_[stratum], blocks);
+        }
+        return !group_.strata.empty();
+    }
+
+    void cover(const LocalTriangle& triangle, const Micropolygon& micro, const Asked& asked) {
+        const std::uint64_t shown = shown_blocks(blocks_of(micro.box) & asked.all_blocks, micro.nearest_w);
         if (shown == 0) return;
-        kernels_.strata_boxes(micro, domains_, boxes_.data());
+        kernels_.strata_boxes(micro, asked.domains, boxes_.data());
         jobs_.clear();
-        for (std::size_t stratum = 0; stratum < boxes_.size(); ++stratum) list_jobs(stratum, shown);
+        for (std::size_t k = 0; k < asked.strata.size(); ++k)
+            list_jobs(k, asked.strata[k], blocks_of(boxes_[k]) & asked.blocks[k] & shown);
         counts_.tested += kernels_.find_lanes(micro.piece, samples_, boxes_.data(), jobs_);
         for (const MicroJob& job : jobs_)
             for (std::uint32_t lanes = job.lanes; lanes != 0; lanes &= lanes - 1)
@@ -120,13 +167,12 @@ class MicropolygonTile {
         return blocks;
     }
 
-    // The vectors of the stratum in those blocks that its box touches.
-    void list_jobs(std::size_t stratum, std::uint64_t among) {
-        const std::uint64_t blocks = blocks_of(boxes_[stratum]) & among;
+    // The vectors of the stratum in those blocks.
+    void list_jobs(std::size_t box, std::size_t stratum, std::uint64_t blocks) {
         for (const SlotBlocks& s : by_stratum_[stratum])
             for (std::uint64_t m = blocks & s.blocks; m != 0; m &= m - 1)
                 jobs_.push_back({static_cast<std::uint32_t>(std::countr_zero(m) * slots_ + s.slot),
-                                 static_cast<std::uint16_t>(stratum), 0});
+                                 static_cast<std::uint16_t>(box), 0});
     }
 
     void cover_sample_of(const LocalTriangle& triangle, const Micropolygon& micro, std::uint32_t vector, int lane) {
@@ -168,7 +214,8 @@ class MicropolygonTile {
     std::span<const Domain> domains_;  // of its strata
     int slots_;
     std::vector<std::vector<SlotBlocks>> by_stratum_;
-    std::vector<LocalBox> boxes_;  // of each stratum
+    Asked all_, group_;
+    std::vector<LocalBox> boxes_;  // of the strata that are asked about
     std::vector<MicroJob> jobs_;
     std::array<float, kBlocksPerCell> farthest_{};  // no smaller than any depth of the block
     LocalBox window_{};                             // the tile

@@ -125,16 +125,16 @@ void arrange_by_slot(T* values, std::size_t spp) {
     }
 }
 
-// Sets the depth of the cell's pixels that lie outside the tile.
+// Sets the depth of the cell's pixels that lie outside the tile or its wanted blocks.
 void set_outside(StillTile& tile, float depth) {
     const Tile& t = tile.work.tile;
     const int left = t.cell_x() * kCellSize, top = t.cell_y() * kCellSize;
-    if (t.x1 - t.x0 == kCellSize && t.y1 - t.y0 == kCellSize) return;
+    if (t.x1 - t.x0 == kCellSize && t.y1 - t.y0 == kCellSize && t.blocks == ~std::uint64_t{0}) return;
     for (int pixel = 0; pixel < StillTile::kPixels; ++pixel) {
         const int block = pixel / kLanes, lane = pixel % kLanes;
         const int px = left + block % kCellBlocks * kBlockSize + lane % kBlockSize;
         const int py = top + block / kCellBlocks * kBlockSize + lane / kBlockSize;
-        if (px >= t.x0 && px < t.x1 && py >= t.y0 && py < t.y1) continue;
+        if (px >= t.x0 && px < t.x1 && py >= t.y0 && py < t.y1 && t.blocks >> block & 1u) continue;
         std::fill_n(&tile.depth[pixel * tile.spp], tile.spp, depth);
         tile.farthest[pixel] = depth;
     }

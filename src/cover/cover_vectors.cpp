@@ -117,11 +117,13 @@ void cover_front_to_back(TileState& state) {
     const CullTest& camera_plane_test = *find_cull_test("improved-dual-space");
     BlurBatch batch{};
     const std::vector<std::uint32_t> order = front_to_back(state.work);
+    const bool some_blocks = state.work.tile.blocks != ~std::uint64_t{0};
     for (std::size_t i = 0; i < order.size(); ++i) {
         fetch_ahead(state.work, order, i);
         const BinnedTriangle& binned = state.work.triangles[order[i]];
         const float nearest = nearest_depth(state.work, binned);
         if (nearest > state.tile_farthest) break;  // so are all that follow
+        if (some_blocks && (blocks_of(binned, state.work.tile) & state.tile_blocks) == 0) continue;
         append(batch, state.work.frame, binned, nearest);
         if (batch.count < BlurBatch::kSize) continue;
         cover_batch(state, batch, camera_plane_test);
@@ -147,7 +149,8 @@ void cover_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
         state.u[1][s] = d.u1, state.v[1][s] = d.v1, state.t[1][s] = d.t1;
     }
     state.tile_blocks = column_mask((work.tile.x0 - left) / kBlockSize, (work.tile.x1 - 1 - left) / kBlockSize) &
-                        row_mask((work.tile.y0 - top) / kBlockSize, (work.tile.y1 - 1 - top) / kBlockSize);
+                        row_mask((work.tile.y0 - top) / kBlockSize, (work.tile.y1 - 1 - top) / kBlockSize) &
+                        work.tile.blocks;
     std::vector<SampleVector> vectors_of_cell;
     state.samples = work.samples.cell(work.tile.cell_x(), work.tile.cell_y(), vectors_of_cell).data();
     const std::size_t vectors = static_cast<std::size_t>(kBlocksPerCell) * slots;

@@ -1,199 +1,25 @@
-#include <algorithm>
-#include <bit>
-#include <cmath>
-
 #include "cover/cover.h"
-#include "cover/exact.h"
+#include "cover/scalar_walk.h"
 #include "frame/opacity.h"
 
 namespace pentaprism {
-namespace {
-
-constexpr int kGrainCount = 3;
-constexpr float kHalfCell = kCellSize / 2;
-
-// Pixels [x0, x1) x [y0, y1), counted from the cell's top left corner.
-struct Rect {
-    int x0, x1, y0, y1;
-    bool empty() const { return x0 >= x1 || y0 >= y1; }
-};
-
-// Exactly the closed square that holds the samples of pixels (x, y) to (x + size - 1, y + size - 1) of the cell.
-Footprint square(int x, int y, int size, const Domain& domain) {
-    const float left = static_cast<float>(x) - kHalfCell, top = kHalfCell - static_cast<float>(y);
-    const float side = static_cast<float>(size);
-    return {left, left + side, top - side, top, domain};
-}
-
-// The smallest footprint that holds the samples of a vector.
-Footprint bucket(const SampleVector& s) {
-    const auto [x0, x1] = std::minmax_element(s.x, s.x + kLanes);
-    const auto [y0, y1] = std::minmax_element(s.y, s.y + kLanes);
-    const auto [u0, u1] = std::minmax_element(s.u, s.u + kLanes);
-    const auto [v0, v1] = std::minmax_element(s.v, s.v + kLanes);
-    const auto [t0, t1] = std::minmax_element(s.t, s.t + kLanes);
-    return {*x0, *x1, *y0, *y1, {*u0, *u1, *v0, *v1, *t0, *t1}};
-}
-
-// A step of the culling and what it knows of the triangle at hand: a state for the tile, one for each pixel of the
-// block, or one for the bucket.
-struct Step {
-    const CullTest* test;
-    CullSetup setup;
-    CullState states[kLanes];
-};
-
-// Takes the tile's triangles through tiles of 8x8 pixels, blocks of 4x4, and the vectors of a block.
-class Walk {
-  public:
-    Walk(const TileWork& work, const Culling& culling, Hits& hits, CoverCounts& counts)
-        : work_(work),
-          hits_(hits),
-          counts_(counts),
-          centre_(cell_centre(work.frame.view, work.tile.cell_x(), work.tile.cell_y())),
-          left_(work.tile.cell_x() * kCellSize),
-          top_(work.tile.cell_y() * kCellSize),
-          slots_(work.samples.slots()),
-          vectors_(work.samples.cell(work.tile.cell_x(), work.tile.cell_y(), room_)) {
-        const View& view = work.frame.view;
-        const float ratio = static_cast<float>(view.lens.ratio);
-        whole_ = {-1.0f, 1.0f, -ratio, ratio, 0.0f, 1.0f};
-        const float x = -0.5f * static_cast<float>(view.width) - centre_.x,
-                    y = -0.5f * static_cast<float>(view.height) - centre_.y;
-        picture_ = {x, x + static_cast<float>(view.width), y, y + static_cast<float>(view.height), whole_};
-        for (const CullStep& step : culling) ++step_count_[static_cast<int>(step.grain)];
-        for (int grain = 0, first = 0; grain < kGrainCount; first += step_count_[grain++]) first_step_[grain] = first;
-        steps_.resize(culling.size());
-        for (std::size_t i = 0; i < culling.size(); ++i) {
-            steps_[i].test = culling[i].test;
-            for (CullState& state : steps_[i].states) state.setup = &steps_[i].setup;
-        }
-        if (!steps(Grain::kBucket).empty()) {
-            buckets_.reserve(vectors_.size());
-            for (const SampleVector& vector : vectors_) buckets_.push_back(bucket(vector));
-        }
-    }
-
-    void cover(const BinnedTriangle& binned) {
-        triangle_ = localize(work_.frame, binned.triangle, binned.segment, centre_, work_.scale);
-        for (Step& step : steps_)
-            if (step.test->begin != nullptr && !step.test->begin(triangle_, picture_, step.setup)) return;
-        const Tile& tile = work_.tile;
-        pixels_ = {std::max<int>(binned.x0, tile.x0) - left_, std::min<int>(binned.x1, tile.x1) - left_,
-                   std::max<int>(binned.y0, tile.y0) - top_, std::min<int>(binned.y1, tile.y1) - top_};
-        if (pixels_.empty()) return;
-        for_each_square(pixels_, kCullTileSize, [&](int x, int y) {
-            if (!prepare(Grain::kTile, square(x, y, kCullTileSize, whole_), 0)) return;
-            for_each_square(cut(x, y, kCullTileSize), kBlockSize, [&](int bx, int by) { cover_block(bx, by); });
-        });
-    }
-
-  private:
-    std::span<Step> steps(Grain grain) {
-        const auto g = static_cast<std::size_t>(grain);
-        return std::span(steps_).subspan(first_step_[g], step_count_[g]);
-    }
-
-    Rect cut(int x, int y, int size) const {
-        return {std::max(x, pixels_.x0), std::min(x + size, pixels_.x1), std::max(y, pixels_.y0),
-                std::min(y + size, pixels_.y1)};
-    }
-
-    // The squares of a grid that the rectangle touches, by their corner.
-    template <class Visit>
-    static void for_each_square(const Rect& rect, int size, Visit&& visit) {
-        for (int y = rect.y0 / size * size; y < rect.y1; y += size)
-            for (int x = rect.x0 / size * size; x < rect.x1; x += size) visit(x, y);
-    }
-
-    // False: a test of that grain refuses the footprint.
-    bool prepare(Grain grain, const Footprint& footprint, int state) {
-        for (Step& step : steps(grain)) {
-            ++counts_.footprints;
-            if (!step.test->prepare(triangle_, footprint, step.states[state])) return false;
-            ++counts_.kept_footprints;
-        }
-        return true;
-    }
-
-    bool keeps(Grain grain, const LocalSample& sample, int state) {
-        for (const Step& step : steps(grain)) {
-            ++counts_.asked;
-            if (!step.test->keeps(step.states[state], sample)) return false;
-        }
-        return true;
-    }
-
-    void cover_block(int x, int y) {
-        std::uint32_t lanes = 0;  // those whose pixel is kept
-        const Rect rect = cut(x, y, kBlockSize);
-        for (int py = rect.y0; py < rect.y1; ++py)
-            for (int px = rect.x0; px < rect.x1; ++px) {
-                const int lane = (py - y) * kBlockSize + (px - x);
-                if (prepare(Grain::kPixel, square(px, py, 1, whole_), lane)) lanes |= 1u << lane;
-            }
-        if (lanes == 0) return;
-        const int block = y / kBlockSize * kCellBlocks + x / kBlockSize;
-        for (int slot = 0; slot < slots_; ++slot) {
-            const std::size_t job = static_cast<std::size_t>(block) * slots_ + slot;
-            if (!buckets_.empty() && !prepare(Grain::kBucket, buckets_[job], 0)) continue;
-            for (std::uint32_t left = lanes; left != 0; left &= left - 1)
-                cover_sample_of(x, y, slot, job, std::countr_zero(left));
-        }
-    }
-
-    void cover_sample_of(int x, int y, int slot, std::size_t job, int lane) {
-        const SampleVector& vector = vectors_[job];
-        const LocalSample sample{vector.x[lane], vector.y[lane], vector.u[lane], vector.v[lane], vector.t[lane]};
-        // Samples of another segment of the path are that segment's; no test has to find that out.
-        const float fraction = std::fma(sample.t, triangle_.segments, -triangle_.segment);
-        if (!(fraction >= 0.0f && fraction < 1.0f)) return;
-        if (!keeps(Grain::kTile, sample, 0) || !keeps(Grain::kPixel, sample, lane) || !keeps(Grain::kBucket, sample, 0))
-            return;
-        ++counts_.tested;
-        const SampleHit hit = cover_sample(triangle_, sample, centre_);
-        const int px = left_ + x + lane % kBlockSize, py = top_ + y + lane / kBlockSize;
-        if (work_.map != nullptr) record(*work_.map, px, py, hit.hit);
-        if (!hit.hit) return;
-        ++counts_.covered;
-        const std::size_t s = job * kLanes + lane;
-        if (!(hit.depth < hits_.depth[s])) return;
-        if (triangle_.alpha_tested) {
-            const int index = work_.samples.indices(px / kBlockSize, py / kBlockSize)[slot * kLanes + lane];
-            if (!is_opaque_at(work_.frame, triangle_.triangle, hit.barycentrics, px, py, index, work_.samples.spp()))
-                return;
-        }
-        hits_.depth[s] = hit.depth;
-        hits_.triangle[s] = triangle_.triangle;
-    }
-
-    static void record(CoverMap& map, int px, int py, bool hit) {
-        const std::size_t pixel = static_cast<std::size_t>(py) * map.width + px;
-        ++map.tested[pixel];
-        map.covered[pixel] += hit;
-    }
-
-    const TileWork& work_;
-    Hits& hits_;
-    CoverCounts& counts_;
-    CellCentre centre_;
-    int left_, top_, slots_;          // of the cell in the picture
-    std::vector<SampleVector> room_;  // before vectors_, which may point into it
-    std::span<const SampleVector> vectors_;
-    Domain whole_;
-    Footprint picture_;
-    int first_step_[kGrainCount] = {}, step_count_[kGrainCount] = {};
-    std::vector<Step> steps_;  // tiles, pixels, buckets
-    std::vector<Footprint> buckets_;
-    LocalTriangle triangle_;
-    Rect pixels_{};  // the triangle's in this tile
-};
-
-}  // namespace
 
 void cover_with_test(const TileWork& work, const Culling& culling, Hits& hits, CoverCounts& counts) {
-    Walk walk(work, culling, hits, counts);
-    for (const std::uint32_t entry : work.list) walk.cover(work.triangles[entry]);
+    auto keep_nearest = [&](const LocalTriangle& triangle, const SampleHit& hit, const SamplePlace& at) {
+        float& depth = hits.depth[at.index];
+        std::uint32_t& nearest = hits.triangle[at.index];
+        if (!(hit.depth < depth || (hit.depth == depth && triangle.triangle < nearest))) return false;
+        if (triangle.alpha_tested) {
+            const int bx = at.px / kBlockSize, by = at.py / kBlockSize;
+            const int index = work.samples.indices(bx, by)[at.slot * kLanes + at.lane];
+            if (!is_opaque_at(work.frame, triangle.triangle, hit.barycentrics, at.px, at.py, index, work.samples.spp()))
+                return false;
+        }
+        depth = hit.depth;
+        nearest = triangle.triangle;
+        return true;
+    };
+    ScalarWalk(work, culling, hits, counts, keep_nearest).cover_all();
 }
 
 void cover_with_test(const TileWork& work, const CullTest& test, Hits& hits, CoverCounts& counts) {

@@ -20,6 +20,7 @@ using LatticePoint = std::array<int, 3>;
 struct Cut {
     std::array<LatticePoint, 3> corner;
     int level;
+    bool in_group;
 };
 
 LatticePoint middle(const LatticePoint& a, const LatticePoint& b) {
@@ -86,27 +87,16 @@ float rounded_up(double x) {
 
 }  // namespace
 
-void Dicer::dice(const LocalTriangle& T, const LocalBox& window,
-                 const std::function<void(const Micropolygon&)>& visit) const {
-    std::vector<Cut> stack{{{{{kLattice, 0, 0}, {0, kLattice, 0}, {0, 0, kLattice}}}, 0}};
+void Dicer::dice(const LocalTriangle& T, const LocalBox& window, const Visitor& visitor) const {
+    std::vector<Cut> stack{{{{{kLattice, 0, 0}, {0, kLattice, 0}, {0, 0, kLattice}}}, 0, false}};
     while (!stack.empty()) {
-        const Cut cut = stack.back();
+        Cut cut = stack.back();
         stack.pop_back();
         Micropolygon micro{piece_of(T, cut), {}, 0.0f};
         const MovingTriangle m = moving(micro.piece);
         const ScreenBox box = screen_bounds(m, T.w_near, ratio_);
         if (!(box.x0 <= window.x1 && box.x1 >= window.x0 && box.y0 <= window.y1 && box.y1 >= window.y0)) continue;
         const bool behind = reaches_behind(m, T.w_near);
-        const bool split = behind ? cut.level < kMaxNearLevel : cut.level < kMaxLevel && longest_edge(m) > kLongestEdge;
-        if (split) {
-            const auto& [a, b, c] = cut.corner;
-            const LatticePoint ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-            stack.push_back({{ab, bc, ca}, cut.level + 1});
-            stack.push_back({{ca, bc, c}, cut.level + 1});
-            stack.push_back({{ab, b, bc}, cut.level + 1});
-            stack.push_back({{a, ab, ca}, cut.level + 1});
-            continue;
-        }
         micro.box = {rounded_down(box.x0), rounded_up(box.x1), rounded_down(box.y0), rounded_up(box.y1)};
         micro.nearest_w = rounded_down(box.nearest_w);
         if (cut.level > 0) {
@@ -114,7 +104,20 @@ void Dicer::dice(const LocalTriangle& T, const LocalBox& window,
             micro.piece.box[0] = rounded_down(box.x0 + centre_.x), micro.piece.box[1] = rounded_up(box.x1 + centre_.x);
             micro.piece.box[2] = rounded_down(box.y0 + centre_.y), micro.piece.box[3] = rounded_up(box.y1 + centre_.y);
         }
-        visit(micro);
+        const float edge = behind ? INFINITY : longest_edge(m);
+        if (!(edge > kLongestEdge) || cut.level == (behind ? kMaxNearLevel : kMaxLevel)) {
+            visitor.visit(micro, cut.in_group);
+            continue;
+        }
+        if (!cut.in_group && edge <= kLongestEdgeOfGroup) {
+            if (!visitor.enter_group(micro)) continue;
+            cut.in_group = true;
+        }
+        const auto& [a, b, c] = cut.corner;
+        const LatticePoint ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+        for (const std::array<LatticePoint, 3>& quarter :
+             {std::array{ab, bc, ca}, std::array{ca, bc, c}, std::array{ab, b, bc}, std::array{a, ab, ca}})
+            stack.push_back({quarter, cut.level + 1, cut.in_group});
     }
 }
 

@@ -30,10 +30,20 @@ class Dicer {
     /// `ratio`: Lens::ratio.
     Dicer(const CellCentre& centre, double ratio) : centre_(centre), ratio_(ratio) {}
 
-    /// Calls visit(micropolygon) for each piece whose box meets `window`. What reaches in front of the near distance is
-    /// cut into 256 at most: there a size in pixels means little.
-    void dice(const LocalTriangle& triangle, const LocalBox& window,
-              const std::function<void(const Micropolygon&)>& visit) const;
+    /// About sixteen micropolygons that touch (more where perspective makes one end small), as the larger piece that
+    /// they are cut from. The triangle is flat, so what bounds that piece's three corners bounds all corners within.
+    static constexpr float kLongestEdgeOfGroup = 4 * kLongestEdge;
+
+    struct Visitor {
+        /// A group whose box meets the window. False: its micropolygons are not wanted.
+        std::function<bool(const Micropolygon& group)> enter_group = [](const Micropolygon&) { return true; };
+        /// A micropolygon whose box meets the window: of the last group, or of none, a small triangle by itself.
+        std::function<void(const Micropolygon& micro, bool in_group)> visit;
+    };
+
+    /// What reaches in front of the near distance is cut into 256 at most, without groups: there a size in pixels means
+    /// little.
+    void dice(const LocalTriangle& triangle, const LocalBox& window, const Visitor& visitor) const;
 
   private:
     CellCentre centre_;

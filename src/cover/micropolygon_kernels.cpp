@@ -119,7 +119,7 @@ std::int64_t find_lanes(const LocalTriangle& T, const SampleVector* samples, con
     std::int64_t tested = 0;
     for (MicroJob& job : jobs) {
         const SampleVector& s = samples[job.vector];
-        const LocalBox& box = boxes[job.stratum];
+        const LocalBox& box = boxes[job.box];
         std::uint32_t found = 0;
         for (int lane = 0; lane < kLanes; lane += static_cast<int>(hn::Lanes(f))) {
             const Vec hx = hn::Load(f, s.x + lane), hy = hn::Load(f, s.y + lane);
@@ -163,7 +163,7 @@ std::int64_t lanes_in_box(const LocalTriangle& T, const SampleVector* samples, c
     std::int64_t tested = 0;
     for (MicroJob& job : jobs) {
         const SampleVector& s = samples[job.vector];
-        const LocalBox& box = boxes[job.stratum];
+        const LocalBox& box = boxes[job.box];
         job.lanes = 0;
         for (int lane = 0; lane < kLanes; ++lane) {
             const float tau = std::fma(s.t[lane], T.segments, -T.segment);

@@ -10,10 +10,10 @@
 
 namespace pentaprism {
 
-/// One vector of samples that a micropolygon is asked for: its place in SampleTable::cell(), and its stratum.
+/// One vector of samples that a micropolygon is asked for: its place in SampleTable::cell(), and its stratum's box.
 struct MicroJob {
     std::uint32_t vector;
-    std::uint16_t stratum;
+    std::uint16_t box;
     std::uint16_t lanes;  ///< result: bit i: sample i may hit
 };
 

@@ -11,11 +11,13 @@
 #include <type_traits>
 
 #include "bound/local_triangle.h"
+#include "cull/occluders.h"
 
 namespace pentaprism {
 
 /// Closed ranges of what is asked about: (hx, hy) in pixels from the cell's middle, y up, within [-16, 16]; and the
-/// lens and shutter ranges in which the samples lie. |u| <= 1, |v| <= Lens::ratio, 0 <= t <= 1.
+/// lens and shutter ranges in which the samples lie. |u| <= 1, |v| <= Lens::ratio, 0 <= t <= 1; whatever the aperture,
+/// a sample's (u, v / ratio) is on the unit disk, but for an ulp.
 struct Footprint {
     float x0, x1, y0, y1;
     Domain domain;
@@ -41,7 +43,11 @@ struct alignas(16) CullMemory {
         return const_cast<CullMemory*>(this)->as<T>();
     }
 };
-using CullSetup = CullMemory<4608>;  ///< of a triangle
+
+/// Of a triangle.
+struct CullSetup : CullMemory<4608> {
+    const Occluders* occluders = nullptr;  ///< what the cell shows so far, if anybody keeps account of it
+};
 
 /// Of a triangle and a footprint.
 struct CullState : CullMemory<640> {
@@ -69,6 +75,10 @@ struct CullTest {
 
     /// False: as a paper prints it, with the flaws that lose samples. Kept to be measured; changes the picture.
     bool conservative = true;
+
+    /// Refuses what CullSetup::occluders hide, too, which is no sample's own doing: whoever walks triangles keeps them
+    /// up to date, front to back. The promises above are about coverage; this one is that the picture does not change.
+    bool asks_occluders = false;
 };
 
 /// `prepare` of a test that asks nothing of footprints beyond the triangle's screen bounds.

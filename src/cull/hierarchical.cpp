@@ -5,8 +5,9 @@
 // Rasterization: a tile that the moving triangle touches only during a part of the shutter hands that part on to its
 // children. The original moves boxes and edges against the tile's planes; we use the corner values of
 // docs/develop/algorithms.md 4.1 and the intervals of 4.4, which also know the lens, and take the bounds again on the
-// narrowed domain at each level (4.10). Each level only drops what cannot hit, so the whole is conservative. The
-// original's occlusion test is left out: whether a triangle is hidden is not asked here.
+// narrowed domain at each level (4.10). Each level only drops what cannot hit, so the whole is conservative. As in the
+// original, a square is also refused if the triangle is behind all that it shows in the part of the shutter that is
+// left: its depth is then the least of the triangle's in that part (cull/occluders.h).
 //
 // begin() walks the hierarchy once for the cell and leaves each block's domain; a footprint takes the hull of its
 // blocks' domains and the bilinear bounds of 4.5 on it.
@@ -28,14 +29,30 @@ struct State {
 
 constexpr SegmentDomain kNothing{1, -1, 1, -1, 1, -1};
 
+// All that samples see of the triangle in that part of its segment is farther away than what the square shows. A hit's
+// depth is a mean of the corners' w; rounding may put it a few ulps in front of the nearest.
+bool is_hidden(const LocalTriangle& T, int bx, int by, int size, const SegmentDomain& domain, const Occluders& shown) {
+    if (T.orthographic) return false;  // w says nothing about depth
+    constexpr double kMargin = 1.0 - 16.0 * kUnitRoundoff;
+    constexpr float kOut = 1e-6f;  // rounding of a sample's s
+    double nearest = INFINITY;
+    for (int i = 0; i < 3; ++i)
+        for (const float s : {domain.s0, domain.s1})
+            nearest = std::min(nearest, double{T.qw[i]} + double{s} * double{T.dw[i]});
+    const float t0 = (domain.s0 + T.segment) / T.segments, t1 = (domain.s1 + T.segment) / T.segments;
+    return nearest * kMargin > double{shown.farthest(bx, by, size, t0 - kOut, t1 + kOut)};
+}
+
 // The square of blocks [bx, bx + size) x [by, by + size), y up as the coordinates.
-bool visit(const LocalTriangle& T, int bx, int by, int size, SegmentDomain domain, const Domain& whole, Setup& setup) {
+bool visit(const LocalTriangle& T, int bx, int by, int size, SegmentDomain domain, const Domain& whole,
+           CullSetup& setup) {
     constexpr float kHalf = kCellSize / 2;
     const auto place = [](int block) { return static_cast<float>(block * kBlockSize) - kHalf; };
     const Footprint square{place(bx), place(bx + size), place(by), place(by + size), whole};
     if (!narrow_domain(T, square, domain)) return false;
+    if (setup.occluders != nullptr && is_hidden(T, bx, by, size, domain, *setup.occluders)) return false;
     if (size == 1) {
-        setup.blocks[by * kCellBlocks + bx] = domain;
+        setup.as<Setup>().blocks[by * kCellBlocks + bx] = domain;
         return true;
     }
     const int half = size / 2;
@@ -45,9 +62,8 @@ bool visit(const LocalTriangle& T, int bx, int by, int size, SegmentDomain domai
     return any;
 }
 
-bool begin(const LocalTriangle& T, const Footprint& picture, CullSetup& memory) {
-    Setup& setup = memory.as<Setup>();
-    std::fill(setup.blocks, setup.blocks + kBlocksPerCell, kNothing);
+bool begin(const LocalTriangle& T, const Footprint& picture, CullSetup& setup) {
+    std::fill_n(setup.as<Setup>().blocks, kBlocksPerCell, kNothing);
     return visit(T, 0, 0, kCellBlocks, segment_domain(T, picture.domain), picture.domain, setup);
 }
 
@@ -96,6 +112,7 @@ bool keeps(const CullState& memory, const LocalSample& sample) {
 extern const CullTest hierarchical_test;
 const CullTest hierarchical_test{"hierarchical", "after Munkberg et al. 2011, Hierarchical Stochastic Motion Blur",
                                  prepare,        keeps,
-                                 Grain::kPixel,  begin};
+                                 Grain::kPixel,  begin,
+                                 true,           true};
 
 }  // namespace pentaprism

@@ -4,8 +4,8 @@
 // that hull and test every sample in it. A footprint outside one of its sides holds no hit: with w > 0 the place of a
 // hit is a quotient of affine functions, so in any direction n the farthest one is at one of the six points
 // (docs/develop/algorithms.md 3.2, 3.5; bound/local_bounds.h computes it). The circle of confusion moves a side out by
-// what it reaches in the direction of the side; we allow for all of the lens' square. The paper's hull of a triangle
-// that reaches the camera plane is that of fifteen candidate points; we take their box there.
+// what it reaches in the direction of the side, over a lens that is a disk. The paper's hull of a triangle that reaches
+// the camera plane is that of fifteen candidate points; we take their box there.
 //
 // A bound of the screen alone: it says nothing of single samples, whatever blurs.
 

@@ -132,23 +132,32 @@ OpacityClass opacity_class(const Frame& frame, std::uint32_t triangle) {
     return classes ? classes[frame.source(triangle)] : OpacityClass::kMixed;
 }
 
-bool is_opaque_at(const Frame& frame, std::uint32_t triangle, const float barycentrics[3], int px, int py,
-                  int sample_index, int spp) {
+float opacity_at(const Frame& frame, std::uint32_t triangle, const float barycentrics[3]) {
     const OpacityClass known = opacity_class(frame, triangle);
-    if (known != OpacityClass::kMixed) return known == OpacityClass::kSolid;
+    if (known != OpacityClass::kMixed) return known == OpacityClass::kSolid ? 1.0f : 0.0f;
     const Part& part = frame.parts[frame.part_of[triangle]];
     const Material& material = frame.scene->materials[part.material];
     const Primitive& primitive = frame.scene->meshes[part.placement.mesh].primitives[part.placement.primitive];
     const Corners corners{frame, triangle, frame.vertices(triangle)};
     const float alpha = material.base_color.w * vertex_alpha(primitive, corners, barycentrics) *
                         texture_alpha(frame, primitive, material.base_color_texture, corners, barycentrics);
-    if (part.alpha_mode == AlphaMode::kMask && !(alpha >= material.alpha_cutoff)) return false;
-    float opacity = material.alpha_mode == AlphaMode::kBlend ? alpha : 1.0f;
-    if (material.transmission > 0.0f)
-        opacity *= 1.0f - see_through(transmission(frame, material, primitive, corners, barycentrics));
-    else if (part.alpha_mode == AlphaMode::kMask)
-        return true;
+    if (part.alpha_mode == AlphaMode::kMask && !(alpha >= material.alpha_cutoff)) return 0.0f;
+    const float opacity = material.alpha_mode == AlphaMode::kBlend ? alpha : 1.0f;
+    if (!(material.transmission > 0.0f)) return opacity;
+    return opacity * (1.0f - see_through(transmission(frame, material, primitive, corners, barycentrics)));
+}
+
+bool is_opaque_at(const Frame& frame, std::uint32_t triangle, const float barycentrics[3], int px, int py,
+                  int sample_index, int spp) {
+    const float opacity = opacity_at(frame, triangle, barycentrics);
+    if (opacity <= 0.0f || opacity >= 1.0f) return opacity >= 1.0f;  // thresholds are in [0, 1)
     return opacity > opacity_threshold(triangle, px, py, sample_index, spp);
+}
+
+bool is_see_through(const Frame& frame, std::uint32_t triangle) {
+    const Part& part = frame.parts[frame.part_of[triangle]];
+    if (opacity_class(frame, triangle) != OpacityClass::kMixed) return false;
+    return part.alpha_mode == AlphaMode::kBlend || frame.scene->materials[part.material].transmission > 0.0f;
 }
 
 }  // namespace pentaprism

@@ -16,6 +16,13 @@ namespace pentaprism {
 bool is_opaque_at(const Frame& frame, std::uint32_t triangle, const float barycentrics[3], int px, int py,
                   int sample_index, int spp);
 
+/// The share of light that the surface stops there: 0 or 1 of a MASK, the alpha of BLEND, less of glass. What
+/// is_opaque_at() decides by; it may be above 1.
+float opacity_at(const Frame& frame, std::uint32_t triangle, const float barycentrics[3]);
+
+/// Has points that stop a part of the light: is_opaque_at() is a matter of chance there.
+bool is_see_through(const Frame& frame, std::uint32_t triangle);
+
 /// What the opacity of one triangle is made of, for those who ask at many points: alpha = factor * (corner colours
 /// mixed) * (texture at the mixed, transformed coordinates), in this order of rounding.
 struct OpacityTerms {

@@ -76,6 +76,7 @@ std::span<const AovInfo> aov_table() {
          "what the culling test costs: of the exact tests of the pixel's samples the share that is covered (0 where "
          "there was none), and their number",
          numbers({"ste", "ste.tested"})},
+        {Aov::kSamples, "samples", "number of the pixel's samples: what --target-error gave it", numbers({"samples"})},
     };
     return kTable;
 }

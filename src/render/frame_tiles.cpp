@@ -69,14 +69,22 @@ FrameTiles::FrameTiles(const Scene& scene, const KeptParts& kept, const RenderSe
     frame_ = pose_frame(scene, view, animations, settings.shutter);
     frame_.textures = kept.textures;
     pose_ms_ = lap();
-    samples_.emplace(make_samples(frame_, settings.image.spp, settings.method));
+    if (settings.image.target_error) {
+        budget_.emplace(settings.image, settings.method.sampler, background_of(scene, settings.image));
+        MethodSettings pilot = settings.method;
+        pilot.seed = SampleBudget::pilot_seed(pilot.seed);
+        samples_.emplace(make_samples(frame_, budget_->pilot_spp(), pilot));
+        for_levels_.resize(budget_->levels().size());
+    } else {
+        samples_.emplace(make_samples(frame_, settings.image.spp, settings.method));
+    }
     samples_ms_ = lap();
     info_ = describe(animations, number);
     visibility_.emplace(frame_, *samples_, settings.method, rendered_part(info_, filter_.reach()));
     bin_ms_ = lap();
     const MethodSettings& method = settings.method;
     shading_.emplace(frame_, ShadingOptions{method.shadows, method.brdf, method.texture_filter, rate_of(method.shading),
-                                            settings.image.spp, kept.environment});
+                                            kept.environment});
     prepare_ms_ = lap();
     make_aovs(number);
 }
@@ -156,43 +164,91 @@ void FrameTiles::make_aovs(double number) {
     }
 }
 
-void FrameTiles::cover_and_shade(const Tile& tile, Worker& worker) {
+int FrameTiles::delivered_pixels(const Tile& tile) const {
+    int pixels = 0;
+    for (int y = std::max(tile.y0, info_.y0); y < std::min(tile.y1, info_.y1); ++y)
+        for (int x = std::max(tile.x0, info_.x0); x < std::min(tile.x1, info_.x1); ++x)
+            pixels += tile.wants(x / kBlockSize, y / kBlockSize);
+    return pixels;
+}
+
+void FrameTiles::cover_and_shade(const Tile& tile, const SampleTable& samples, Worker& worker, bool to_decide) {
+    if (settings_.method.transparency == Transparency::kABuffer) return cover_and_shade_layers(tile, samples, worker);
     const auto start = Clock::now();
     CoverCounts counts;
-    visibility_->cover(tile, worker.hits, counts, tests_ ? &*tests_ : nullptr);
+    visibility_->cover(tile, samples, worker.hits, counts, tests_ && !to_decide ? &*tests_ : nullptr);
     const auto covered = Clock::now();
-    costs_.shaded += worker.shader.shade(*shading_, *samples_, tile, worker.hits, worker.shade);
+    costs_.shaded += worker.shader.shade(*shading_, samples, tile, worker.hits, worker.shade, to_decide);
     costs_.cover_ns += nanoseconds(covered - start);
     costs_.shade_ns += nanoseconds(Clock::now() - covered);
     costs_.tested += counts.tested;
     costs_.covered += counts.covered;
-    const int width = std::min(tile.x1, info_.x1) - std::max(tile.x0, info_.x0);
-    const int height = std::min(tile.y1, info_.y1) - std::max(tile.y0, info_.y0);
-    costs_.pixels += std::int64_t{std::max(0, width)} * std::max(0, height);
+}
+
+// Its time counts as shading: coverage comes in between.
+void FrameTiles::cover_and_shade_layers(const Tile& tile, const SampleTable& samples, Worker& worker) {
+    const auto start = Clock::now();
+    CoverCounts counts;
+    costs_.shaded +=
+        worker.layers.shade(*visibility_, *shading_, samples, tile, background_of(*frame_.scene, settings_.image),
+                            worker.hits, worker.shade, counts);
+    costs_.shade_ns += nanoseconds(Clock::now() - start);
+    costs_.tested += counts.tested;
+    costs_.covered += counts.covered;
+}
+
+void FrameTiles::add_samples(const Tile& tile, const SampleTable& samples, Worker& worker) {
+    cover_and_shade(tile, samples, worker, false);
+    const auto start = Clock::now();
+    worker.sums.tile.blocks = tile.blocks;
+    filter_.add(samples, worker.hits, worker.shade, worker.sums);
+    if (aovs_) aovs_->resolve(samples, worker.hits, worker.shade, worker.aovs, worker.sums);
+    costs_.resolve_ns += nanoseconds(Clock::now() - start);
+    const int pixels = delivered_pixels(tile);
+    costs_.pixels += pixels;
+    costs_.samples += std::int64_t{pixels} * samples.spp();
+}
+
+const SampleTable& FrameTiles::samples_of_level(std::size_t level) {
+    const std::lock_guard<std::mutex> lock(making_);
+    std::optional<SampleTable>& samples = for_levels_[level];
+    if (samples) return *samples;
+    const auto start = Clock::now();
+    isolated([&] { samples.emplace(make_samples(frame_, budget_->levels()[level], settings_.method)); });
+    costs_.tables_ns += nanoseconds(Clock::now() - start);
+    return *samples;
 }
 
 void FrameTiles::render(const Tile& tile, Worker& worker) {
-    cover_and_shade(tile, worker);
-    const auto start = Clock::now();
     worker.sums.start(tile, filter_.reach(), channel_count(info_.aovs));
-    filter_.add(*samples_, worker.hits, worker.shade, worker.sums);
-    if (aovs_) aovs_->resolve(*samples_, worker.hits, worker.shade, worker.aovs, worker.sums);
-    costs_.resolve_ns += nanoseconds(Clock::now() - start);
+    if (!budget_) return add_samples(tile, *samples_, worker);
+    cover_and_shade(tile, *samples_, worker, true);
+    costs_.pilot_samples += std::int64_t{delivered_pixels(tile)} * samples_->spp();
+    const auto blocks = budget_->share_out(tile, *samples_, worker.shade);
+    for (std::size_t level = 0; level < blocks.size(); ++level) {
+        if (blocks[level] == 0) continue;
+        Tile part = tile;
+        part.blocks = blocks[level];
+        add_samples(part, samples_of_level(level), worker);
+    }
 }
 
 void FrameTiles::store(const Tile& tile, Worker& worker) {
-    cover_and_shade(tile, worker);
+    cover_and_shade(tile, *samples_, worker, false);
     const auto start = Clock::now();
     store_samples(tile, *samples_, worker.hits, worker.shade, background_of(*frame_.scene, settings_.image),
                   worker.samples);
     costs_.resolve_ns += nanoseconds(Clock::now() - start);
+    const int pixels = delivered_pixels(tile);
+    costs_.pixels += pixels;
+    costs_.samples += std::int64_t{pixels} * samples_->spp();
 }
 
 void FrameTiles::fill(RenderStats& stats) const {
     const double per_thread = 1e-6 / thread_count();
     const double cover_ms = static_cast<double>(costs_.cover_ns) * per_thread;
     stats.times_ms = {{"pose", pose_ms_},
-                      {"samples", samples_ms_},
+                      {"samples", samples_ms_ + 1e-6 * static_cast<double>(costs_.tables_ns)},
                       {"bin", bin_ms_},
                       {"prepare_shading", prepare_ms_},
                       {"cover", cover_ms},
@@ -203,7 +259,9 @@ void FrameTiles::fill(RenderStats& stats) const {
     stats.moving_triangles = 0;
     for (const Part& part : frame_.parts)
         stats.moving_triangles += std::int64_t{part.triangle_count} * (part.moves ? part.segments : 1);
-    stats.samples = costs_.pixels * settings_.image.spp;
+    stats.samples = costs_.samples;
+    stats.pilot_samples = costs_.pilot_samples;
+    stats.pixels = costs_.pixels;
     stats.tested = costs_.tested;
     stats.covered = costs_.covered;
     stats.shaded = costs_.shaded;

@@ -6,9 +6,12 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <pentaprism/render.h>
 
+#include "render/layer_shading.h"
+#include "render/sample_budget.h"
 #include "render/visibility.h"
 #include "resolve/aov_film.h"
 #include "resolve/flow.h"
@@ -39,6 +42,7 @@ class FrameTiles {
     struct Worker {
         Hits hits;
         TileShader shader;
+        LayerShader layers;
         TileShade shade;
         TileAovs::Worker aovs;
         TileSums sums;
@@ -54,16 +58,27 @@ class FrameTiles {
 
   private:
     struct Costs {
-        std::atomic<std::int64_t> cover_ns{0}, shade_ns{0}, resolve_ns{0}, tested{0}, covered{0}, shaded{0}, pixels{0};
+        std::atomic<std::int64_t> cover_ns{0}, shade_ns{0}, resolve_ns{0}, tested{0}, covered{0}, shaded{0}, samples{0},
+            pilot_samples{0}, pixels{0}, tables_ns{0};
     };
-    void cover_and_shade(const Tile& tile, Worker& worker);
+    /// Leaves hits and colours in the worker. `to_decide`: samples that are not shown; their tests are not mapped and
+    /// their colours are rough.
+    void cover_and_shade(const Tile& tile, const SampleTable& samples, Worker& worker, bool to_decide);
+    void cover_and_shade_layers(const Tile& tile, const SampleTable& samples, Worker& worker);
+    void add_samples(const Tile& tile, const SampleTable& samples, Worker& worker);
+    /// Makes it when it is asked for first.
+    const SampleTable& samples_of_level(std::size_t level);
+    int delivered_pixels(const Tile& tile) const;
     FrameInfo describe(std::span<const Index> animations, double number) const;
     void make_aovs(double number);
 
     RenderSettings settings_;
     TileFilter filter_;
     Frame frame_;
-    std::optional<SampleTable> samples_;
+    std::optional<SampleBudget> budget_;                  // none: all pixels get the same number of samples
+    std::optional<SampleTable> samples_;                  // of the budget: those that decide
+    std::vector<std::optional<SampleTable>> for_levels_;  // of the budget's levels: those that a block got so far
+    std::mutex making_;                                   // of for_levels_
     std::optional<Visibility> visibility_;
     std::optional<ShadingScene> shading_;
     FrameInfo info_;

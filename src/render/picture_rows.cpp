@@ -19,8 +19,12 @@ PixelRect delivered_part(const FrameInfo& info) {
 }
 
 PixelRect rendered_part(const FrameInfo& info, int reach) {
-    return {std::max(0, info.x0 - reach), std::min(info.width, info.x1 + reach), std::max(0, info.y0 - reach),
-            std::min(info.height, info.y1 + reach)};
+    // To the end of a block: what a block's pixels decide together must not depend on a crop.
+    const auto end = [&](int last, int size) {
+        return std::min(size, (last + reach + kBlockSize - 1) / kBlockSize * kBlockSize);
+    };
+    return {std::max(0, info.x0 - reach), end(info.x1, info.width), std::max(0, info.y0 - reach),
+            end(info.y1, info.height)};
 }
 
 PictureRows::PictureRows(const FrameInfo& info, int reach, double exposure, RowSink& sink)

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <pentaprism/error.h>
 
+#include "frame/opacity.h"
+
 namespace pentaprism {
 namespace {
 
@@ -50,7 +52,7 @@ Visibility::Visibility(const Frame& frame, const SampleTable& samples, const Met
     : frame_(frame),
       samples_(samples),
       method_(method.visibility),
-      by_pixel_(grouping_for(frame) == Grouping::kStill && !samples.by_pixel(0, 0).x.empty()),
+      blurs_(grouping_for(frame) != Grouping::kStill),
       culling_(method.culling == "auto" ? Culling() : parse_culling(method.culling)) {
     if (method.backend == Backend::kGl)
         rasterizer_ = make_gl_rasterizer(frame, samples, method.culling, limits);
@@ -61,21 +63,48 @@ Visibility::Visibility(const Frame& frame, const SampleTable& samples, const Met
     tiles_ = tiles_over(limits, method.tile_size);
 }
 
-void Visibility::cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map) const {
-    hits.reset(samples_.slots());
+void Visibility::cover(const Tile& tile, const SampleTable& samples, Hits& hits, CoverCounts& counts,
+                       CoverMap* map) const {
+    hits.reset(samples.slots(), tile.blocks);
     if (tracer_) return tracer_->trace(tile, hits);
     if (rasterizer_) return rasterizer_->cover(tile, hits, counts, map);
-    const TileWork work{frame_, samples_, bins_->triangles(), bins_->tile(tile.x0, tile.y0), tile, map};
+    const TileWork work{frame_, samples, bins_->triangles(), bins_->tile(tile.x0, tile.y0), tile, map};
+    cover_list(work, hits, counts);
+}
+
+void Visibility::cover_list(const TileWork& work, Hits& hits, CoverCounts& counts) const {
     if (method_ == VisibilityMethod::kMicropolygon)
         cover_micropolygons(work, hits, counts);
     else if (!culling_.empty())
         cover_with_test(work, culling_, hits, counts);
-    else if (samples_.pattern() != SamplePattern::kFree)
+    else if (work.samples.pattern() != SamplePattern::kFree)
         cover_shared(work, hits, counts);
-    else if (by_pixel_)
+    else if (!blurs_ && !work.samples.by_pixel(0, 0).x.empty())
         cover_still(work, hits, counts);
     else
         cover_vectors(work, hits, counts);
+}
+
+// Of the tile's triangles those that are, or are not, see-through.
+std::vector<std::uint32_t> Visibility::see_through(const Tile& tile, bool wanted) const {
+    std::vector<std::uint32_t> list;
+    for (const std::uint32_t entry : bins_->tile(tile.x0, tile.y0))
+        if (is_see_through(frame_, bins_->triangles()[entry].triangle) == wanted) list.push_back(entry);
+    return list;
+}
+
+void Visibility::cover_solid(const Tile& tile, const SampleTable& samples, Hits& hits, CoverCounts& counts) const {
+    const std::vector<std::uint32_t> list = see_through(tile, false);
+    hits.reset(samples.slots(), tile.blocks);
+    cover_list({frame_, samples, bins_->triangles(), list, tile, nullptr}, hits, counts);
+}
+
+void Visibility::cover_layers(const Tile& tile, const SampleTable& samples, const Hits& solid, Layers& layers,
+                              CoverCounts& counts) const {
+    const std::vector<std::uint32_t> list = see_through(tile, true);
+    const Culling culling = culling_.empty() ? parse_culling("improved-dual-space") : culling_;
+    pentaprism::cover_layers({frame_, samples, bins_->triangles(), list, tile, nullptr}, culling, solid, layers,
+                             counts);
 }
 
 }  // namespace pentaprism

@@ -7,6 +7,7 @@
 
 #include "bin/bins.h"
 #include "cover/cover.h"
+#include "cover/layers.h"
 #include "frame/frame.h"
 #include "gl/rasterizer.h"
 #include "sample/sample_table.h"
@@ -26,16 +27,30 @@ class Visibility {
 
     /// Fills the tile's hits. Thread-safe: each caller brings its own Hits and may share a map of the whole picture, in
     /// which tiles write different pixels.
-    void cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map = nullptr) const;
+    void cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map = nullptr) const {
+        cover(tile, samples_, hits, counts, map);
+    }
+    /// With other samples of make_samples() for the same method, which must be kStochastic on the processor. Blocks of
+    /// the tile that are not wanted are left as they are.
+    void cover(const Tile& tile, const SampleTable& samples, Hits& hits, CoverCounts& counts, CoverMap* map) const;
+
+    /// What the samples see of all triangles that are not see-through (frame/opacity.h), and one pass over those that
+    /// are for what is in front of that. For VisibilityMethod::kStochastic on the processor.
+    void cover_solid(const Tile& tile, const SampleTable& samples, Hits& hits, CoverCounts& counts) const;
+    void cover_layers(const Tile& tile, const SampleTable& samples, const Hits& solid, Layers& layers,
+                      CoverCounts& counts) const;
 
     /// 0 for a tracer and for a backend that bins on its own.
     std::int64_t binned_triangles() const { return bins_ ? static_cast<std::int64_t>(bins_->triangles().size()) : 0; }
 
   private:
+    void cover_list(const TileWork& work, Hits& hits, CoverCounts& counts) const;
+    std::vector<std::uint32_t> see_through(const Tile& tile, bool wanted) const;
+
     const Frame& frame_;
     const SampleTable& samples_;
     VisibilityMethod method_;
-    bool by_pixel_;    ///< nothing blurs, and the samples are arranged for that
+    bool blurs_;
     Culling culling_;  ///< empty: the fast path
     std::optional<Bins> bins_;
     std::unique_ptr<const Tracer> tracer_;

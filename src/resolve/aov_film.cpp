@@ -23,6 +23,7 @@ void TileAovs::resolve(const SampleTable& samples, const Hits& hits, const TileS
     std::vector<SampleVector> room;
     for (int by = tile.y0 / kBlockSize; by * kBlockSize < tile.y1; ++by)
         for (int bx = tile.x0 / kBlockSize; bx * kBlockSize < tile.x1; ++bx) {
+            if (!tile.wants(bx, by)) continue;
             worker.order.read(samples, bx, by);
             const std::span<const SampleVector> vectors = samples.block(bx, by, room);
             for (int lane = 0; lane < kLanes; ++lane) {

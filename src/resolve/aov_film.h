@@ -59,7 +59,8 @@ class TileAovs {
         std::vector<std::unique_ptr<AovResolver>> resolvers;
     };
 
-    /// Fills `sums.aovs` of the tile that `sums` were started for. Thread-safe for different sums and workers.
+    /// Fills `sums.aovs` in the wanted blocks of the tile that `sums` were started for. Thread-safe for different sums
+    /// and workers.
     void resolve(const SampleTable& samples, const Hits& hits, const TileShade& shade, Worker& worker,
                  TileSums& sums) const;
 

@@ -285,6 +285,17 @@ class OcclusionResolver : public MeanResolver<4> {
     const FlowOcclusion& occlusion_;
 };
 
+class SamplesResolver : public AovResolver {
+  public:
+    void begin(int, int) override { samples_ = 0; }
+    void hit(const SurfaceSample&, const glm::vec3&) override { ++samples_; }
+    void miss(const glm::vec3&) override { ++samples_; }
+    void end(float* out) override { *out = static_cast<float>(samples_); }
+
+  private:
+    int samples_ = 0;
+};
+
 class SteResolver : public AovResolver {
   public:
     explicit SteResolver(const AovSources& sources) : tests_(*sources.tests) {}
@@ -334,6 +345,8 @@ std::unique_ptr<AovResolver> make_resolver(Aov aov, const AovSources& sources) {
             return std::make_unique<OcclusionResolver>(sources);
         case Aov::kSte:
             return std::make_unique<SteResolver>(sources);
+        case Aov::kSamples:
+            return std::make_unique<SamplesResolver>();
         case Aov::kVariance:
             break;
     }

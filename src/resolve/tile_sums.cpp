@@ -107,6 +107,7 @@ void TileFilter::add(const SampleTable& samples, const Hits& hits, const TileSha
     SampleOrder order;
     for (int by = tile.y0 / kBlockSize; by * kBlockSize < tile.y1; ++by)
         for (int bx = tile.x0 / kBlockSize; bx * kBlockSize < tile.x1; ++bx) {
+            if (!tile.wants(bx, by)) continue;
             order.read(samples, bx, by);
             const std::span<const SampleVector> vectors = samples.block(bx, by);
             for (int lane = 0; lane < kLanes; ++lane) {

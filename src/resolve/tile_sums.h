@@ -45,7 +45,8 @@ class TileFilter {
 
     int reach() const { return reach_; }
 
-    /// Adds the samples of the tile's pixels to `sums`, which were started for it. Thread-safe for different sums.
+    /// Adds the samples of the tile's wanted blocks to `sums`, which were started for it. Thread-safe for different
+    /// sums.
     void add(const SampleTable& samples, const Hits& hits, const TileShade& shade, TileSums& sums) const;
 
     /// Adds one sample wherever it lies, as far as sums.reach - reach() from the tile. Unlike add() it rounds each by

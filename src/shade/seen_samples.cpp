@@ -80,14 +80,14 @@ void project(const SeenSamples::Batch& batch) {
     }
 }
 
-// floor(log2(side)) of a cell whose side is a quarter of this length, given squared; at most 2^6 pixels.
-HWY_INLINE IVec level(F f, Vec length2) {
+// floor(log2(side)) of a cell whose side is a quarter of this length, given squared; `least` to 6.
+HWY_INLINE IVec level(F f, Vec length2, int least) {
     constexpr float kBlurShare2 = 0.25f * 0.25f;
     const I d;
     const Vec cells2 = hn::Mul(length2, hn::Set(f, kBlurShare2));
     const IVec exponent = hn::Sub(hn::ShiftRight<23>(hn::BitCast(d, cells2)), hn::Set(d, 127));
-    const IVec halved = hn::Min(hn::Max(hn::ShiftRight<1>(exponent), hn::Zero(d)), hn::Set(d, 6));
-    return hn::IfThenElseZero(hn::RebindMask(d, hn::IsFinite(cells2)), halved);
+    const IVec halved = hn::Min(hn::Max(hn::ShiftRight<1>(exponent), hn::Set(d, least)), hn::Set(d, 6));
+    return hn::IfThenElse(hn::RebindMask(d, hn::IsFinite(cells2)), halved, hn::Set(d, least));
 }
 
 // Number of the direction nearest to (x, y) or (-x, -y).
@@ -130,8 +130,8 @@ void find_cells(const SeenSamples::Batch& batch) {
         const Vec vx = hn::Div(hn::Sub(blend(T.motion_x), hn::Mul(motion_w, x)), w);
         const Vec vy = hn::Div(hn::Sub(blend(T.motion_y), hn::Mul(motion_w, y)), w);
         const Vec coc = hn::Div(blend(T.coc), w), lens2 = hn::Mul(hn::Set(f, 3.0f), hn::Mul(coc, coc));
-        const IVec shorter = level(f, lens2);
-        const IVec longer = level(f, plus_product(plus_product(lens2, vx, vx), vy, vy));
+        const IVec shorter = level(f, lens2, batch.least_level);
+        const IVec longer = level(f, plus_product(plus_product(lens2, vx, vx), vy, vy), batch.least_level);
 
         IVec direction = hn::Zero(d);
         Vec along = x, across = y;
@@ -214,7 +214,8 @@ ShadingCell CellKey::cell() const {
     return cell;
 }
 
-void SeenSamples::start(const Frame& frame, const CellCentre& centre, const SampleVector* samples) {
+void SeenSamples::start(const Frame& frame, const CellCentre& centre, const SampleVector* samples, int least_level) {
+    least_level_ = least_level;
     frame_ = &frame;
     centre_ = centre;
     samples_ = samples;
@@ -242,9 +243,11 @@ void SeenSamples::see(std::uint32_t triangle, std::span<const std::uint32_t> ind
     kind_.resize(padded);
     place_.resize(padded);
     for (std::size_t first = 0; first < padded; first += kLanes) {
-        Batch batch{
-            &indices_[first], samples_,      nullptr,       cells, {&b_[0][first], &b_[1][first], &b_[2][first]},
-            &t_[first],       &kind_[first], &place_[first]};
+        Batch batch{&indices_[first], samples_,
+                    nullptr,          cells,
+                    least_level_,     {&b_[0][first], &b_[1][first], &b_[2][first]},
+                    &t_[first],       &kind_[first],
+                    &place_[first]};
         std::uint64_t done = 0;  // segments: at most 64 (camera/settings.cpp)
         for (int lane = 0; lane < (segments == 1 ? 1 : kLanes); ++lane) {
             const std::uint32_t index = indices_[first + lane];

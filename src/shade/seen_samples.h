@@ -55,8 +55,9 @@ const CellDirections& cell_directions();
 /// Keeps its memory; one for each thread.
 class SeenSamples {
   public:
-    /// For samples of one cell of the picture's grid. All must outlive what follows.
-    void start(const Frame& frame, const CellCentre& centre, const SampleVector* samples);
+    /// For samples of one cell of the picture's grid. All must outlive what follows. No side of a shading cell is less
+    /// than 2^least_level pixels; at most 6.
+    void start(const Frame& frame, const CellCentre& centre, const SampleVector* samples, int least_level = 0);
 
     /// `indices`: of samples that hit the triangle, as in Hits. `cells`: null if no cells are wanted.
     void see(std::uint32_t triangle, std::span<const std::uint32_t> indices, const CellTriangle* cells);
@@ -72,6 +73,7 @@ class SeenSamples {
         const SampleVector* samples;
         const LocalTriangle* triangle;
         const CellTriangle* cells;
+        int least_level;
         float *b[3], *t;
         std::uint32_t *kind, *place;
     };
@@ -84,6 +86,7 @@ class SeenSamples {
     const Frame* frame_ = nullptr;
     CellCentre centre_{0.0f, 0.0f};
     const SampleVector* samples_ = nullptr;
+    int least_level_ = 0;
     std::uint32_t triangle_ = 0;
     std::vector<LocalTriangle> locals_;  // of each segment
     std::vector<std::uint8_t> ready_;

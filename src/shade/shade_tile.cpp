@@ -14,6 +14,7 @@ namespace {
 constexpr int kSamplesPerChunk = 1 << 16;
 constexpr int kQuarters = QuarterColors::kQuarters;
 constexpr int kLookups = ShadowPoint::kLanes / kQuarters;  // of a quarter
+constexpr int kRoughLevel = 2;                             // 2^2 = kBlockSize
 constexpr float kBrightest = 0x1p20f;
 
 // Of four bits, how many are set. (The processor's own instruction is a call where the build does not assume it.)
@@ -67,17 +68,26 @@ std::uint32_t seed_of(const Tile& tile, int pixel, std::uint32_t salt) {
     return mix(mix(static_cast<std::uint32_t>(x) + 0x9e3779b9u * salt) + static_cast<std::uint32_t>(y));
 }
 
+// Nothing is seen yet by the samples of the blocks that are wanted.
+void clear(const Tile& tile, int slots, std::vector<std::uint32_t>& points) {
+    const std::size_t per_block = static_cast<std::size_t>(slots) * kLanes, all = kBlocksPerCell * per_block;
+    if (points.size() < all) return points.assign(all, kBackground);
+    for (std::size_t block = 0; block < kBlocksPerCell; ++block)
+        if (tile.blocks >> block & 1u) std::fill_n(points.begin() + block * per_block, per_block, kBackground);
+}
+
 }  // namespace
 
 std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& samples, const Tile& tile,
-                               const Hits& hits, TileShade& out) {
+                               const Hits& hits, TileShade& out, bool roughly) {
     scene_ = &scene;
     by_quarters_ = scene.shadows().move();
     shaded_ = 0;
-    out.point_of_sample.assign(hits.triangle.size(), kBackground);
+    clear(tile, samples.slots(), out.point_of_sample);
     out.colors.clear();
     const SampleVector* vectors = samples.cell(tile.cell_x(), tile.cell_y(), room_).data();
-    seen_.start(scene.frame(), cell_centre(scene.frame().view, tile.cell_x(), tile.cell_y()), vectors);
+    seen_.start(scene.frame(), cell_centre(scene.frame().view, tile.cell_x(), tile.cell_y()), vectors,
+                roughly ? kRoughLevel : 0);
 
     // Of what does not blur, pixels are the cells; there the mean of the samples is better than the middle.
     const bool in_cells = scene.options().rate == ShadingRate::kDecoupled;
@@ -87,9 +97,9 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
         if (scene.has_background()) shade_background(vectors, tile, out);
         for (std::size_t i = 0; i < samples_.triangle_count(); ++i) {
             const std::uint32_t triangle = samples_.triangle(i);
-            const ShadedTriangle shaded(scene, triangle);
+            const ShadedTriangle shaded(scene, triangle, samples.spp());
             const Run run{shaded, triangle, samples_.places(i), samples_.pixels(i)};
-            const bool cells = in_cells && !shaded.is_sharp();
+            const bool cells = in_cells && (roughly || !shaded.is_sharp());
             seen_.see(triangle, run.places, cells ? &shaded.cells() : nullptr);
             shadows_.start(scene.shadows(), triangle);
             if (cells) {

@@ -36,9 +36,10 @@ struct QuarterColors {
 /// before.
 class TileShader {
   public:
-    /// Fills `out`. Returns the number of points shaded.
+    /// Fills `out`. Returns the number of points shaded. `roughly`: for little more than a guess of what pixels see,
+    /// the least cells are blocks and not pixels (where the rate asks for cells).
     std::int64_t shade(const ShadingScene& scene, const SampleTable& samples, const Tile& tile, const Hits& hits,
-                       TileShade& out);
+                       TileShade& out, bool roughly = false);
 
   private:
     /// The samples of one triangle.

@@ -45,8 +45,12 @@ glm::vec3 visible_normal(const glm::vec3& normal, const glm::vec3& face, const g
 
 }  // namespace
 
-ShadedTriangle::ShadedTriangle(const ShadingScene& scene, std::uint32_t triangle)
-    : scene_(scene), triangle_(triangle), part_(scene.part_of(triangle)), vertices_(scene.frame().vertices(triangle)) {
+ShadedTriangle::ShadedTriangle(const ShadingScene& scene, std::uint32_t triangle, int spp)
+    : scene_(scene),
+      triangle_(triangle),
+      blur_share_(scene.blur_share(spp)),
+      part_(scene.part_of(triangle)),
+      vertices_(scene.frame().vertices(triangle)) {
     if (part_.material->textured || scene.options().rate == ShadingRate::kDecoupled) project(triangle);
     const glm::vec3 &a = part_.positions[vertices_[0]], &b = part_.positions[vertices_[1]],
                     &c = part_.positions[vertices_[2]];
@@ -125,7 +129,7 @@ TextureFootprint ShadedTriangle::footprint(const glm::vec3& barycentrics, int se
     footprint.add(by_x * cell.along.x + by_y * cell.along.y, 1.0f / 12.0f);
     footprint.add(by_x * cell.across.x + by_y * cell.across.y, 1.0f / 12.0f);
     if (scene_.options().texture_filter == TextureFilter::kPixel) return footprint;
-    const float share = scene_.blur_share();
+    const float share = blur_share_;
     const float lens = 0.25f * coc * coc * share;
     footprint.add(by_x, lens);
     footprint.add(by_y, lens * ratio * ratio);

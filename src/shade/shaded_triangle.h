@@ -28,7 +28,8 @@ struct LitColor {
 
 class ShadedTriangle {
   public:
-    ShadedTriangle(const ShadingScene& scene, std::uint32_t triangle);
+    /// `spp`: samples per pixel of the picture.
+    ShadedTriangle(const ShadingScene& scene, std::uint32_t triangle, int spp);
 
     /// Linear colour of the point with these barycentrics (inside the triangle, sum 1) seen from the front or the back.
     /// The texture is averaged over the cell's sides.
@@ -64,6 +65,7 @@ class ShadedTriangle {
 
     const ShadingScene& scene_;
     std::uint32_t triangle_;
+    float blur_share_;
     const ShadedPart& part_;
     std::array<std::uint32_t, 3> vertices_;  // Frame::vertices()
     Projection projection_;

@@ -65,7 +65,6 @@ ShadingScene::ShadingScene(const Frame& frame, const ShadingOptions& options) : 
     const Scene& scene = *frame.scene;
     const glm::dmat4 camera_to_world = glm::inverse(world_to_camera(frame.view, frame.middle));
     const glm::dvec3 eye(camera_to_world[3]);
-    if (options.rate != ShadingRate::kPixel) blur_share_ = std::pow(static_cast<float>(options.spp), -0.8f);
     backwards_ = glm::vec3(glm::normalize(glm::dvec3(camera_to_world[2])));
     lighting_ = pose_lights(frame, eye, options.environment.get());
     if (options.environment) {
@@ -91,6 +90,10 @@ ShadingScene::ShadingScene(const Frame& frame, const ShadingOptions& options) : 
         parts_[i].material = part.material == kNone ? &materials_.back() : &materials_[part.material];
         pose_part(frame, part, eye, parts_[i]);
     });
+}
+
+float ShadingScene::blur_share(int spp) const {
+    return options_.rate == ShadingRate::kPixel ? 1.0f : std::pow(static_cast<float>(spp), -0.8f);
 }
 
 glm::vec3 ShadingScene::background(float gx, float gy, float u, float v, float t) const {

@@ -42,7 +42,6 @@ struct ShadingOptions {
     BrdfModel brdf = BrdfModel::kGltf;
     TextureFilter texture_filter = TextureFilter::kFull;
     ShadingRate rate = ShadingRate::kPixel;
-    int spp = 1;
     std::shared_ptr<const Environment> environment;
 };
 
@@ -60,9 +59,9 @@ class ShadingScene {
     const Shadows& shadows() const { return *shadows_; }
 
     /// Variance of a texture's footprint over shutter and lens that one evaluation stands for. All of it, where it
-    /// serves a whole pixel; where each sample picks its own, the samples average over motion and lens themselves, and
-    /// what falls to each has a width of N^-0.4 (measured; four dimensions would say -0.25 to -0.5).
-    float blur_share() const { return blur_share_; }
+    /// serves a whole pixel; where each of `spp` samples picks its own, the samples average over motion and lens
+    /// themselves, and what falls to each has a width of N^-0.4 (measured; four dimensions would say -0.25 to -0.5).
+    float blur_share(int spp) const;
 
     /// How large a texel of a shadow map should be there, metres: a pixel, and a quarter of what defocus blurs.
     float shadow_texel(const glm::vec3& position) const;
@@ -82,7 +81,6 @@ class ShadingScene {
     std::vector<BoundMaterial> materials_;  // the scene's, then the default one
     std::vector<ShadedPart> parts_;
     Lighting lighting_;
-    float blur_share_ = 1.0f;
     std::unique_ptr<const Shadows> shadows_;
     struct CameraKnot {
         glm::mat3 to_world;

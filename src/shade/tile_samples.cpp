@@ -16,7 +16,7 @@ void TileSamples::collect(const SampleTable& samples, const Tile& tile, const Hi
         const int bx = tile.cell_x() * kCellBlocks + block % kCellBlocks;
         const int by = tile.cell_y() * kCellBlocks + block / kCellBlocks;
         if (bx * kBlockSize < tile.x0 || bx * kBlockSize >= tile.x1) continue;
-        if (by * kBlockSize < tile.y0 || by * kBlockSize >= tile.y1) continue;
+        if (by * kBlockSize < tile.y0 || by * kBlockSize >= tile.y1 || !tile.wants(bx, by)) continue;
         order_.read(samples, bx, by);
         for (int lane = 0; lane < kLanes; ++lane) {
             const std::uint16_t* slot = order_.slots(lane);

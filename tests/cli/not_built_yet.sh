@@ -11,7 +11,7 @@ done
 
 # The names that users' scripts rely on.
 render_help=$(help_of render)
-for option in -r,--resolution -s,--spp --filter --crop --exposure --tonemap --background --camera --focal-length --sensor-width \
+for option in -r,--resolution -s,--spp --target-error --max-spp --filter --crop --exposure --tonemap --background --camera --focal-length --sensor-width \
     --fstop --lens-radius --focus-distance --focus-object --focus-pixel --aperture-blades --aperture-rotation --aperture-ratio \
     --aperture-roundness \
     --focus-range --max-foreground-blur --tilt --swing --aperture-image --cats-eye --no-defocus --shutter --shutter-position --shutter-curve --rolling-shutter \

@@ -65,7 +65,7 @@ std::vector<Tally> ask_all(std::span<const CullTest* const> tests, Hard hard, st
     accepted +=
         for_each_accepted(hard, seed, wanted, shape, true, [&](const HardCase& c, LocalSample s, SampleHit hit) {
             const bool at_border = r.chance(0.15);
-            if (at_border) support::push_to_border(r, c, s, hit);
+            if (at_border) support::push_to_border(r, c, shape, s, hit);
             ++turn;
             Footprint footprints[4];
             for (int k = 0; k < 4; ++k) footprints[k] = region_around(r, kRegions[k], c.ratio(), s);
@@ -73,6 +73,8 @@ std::vector<Tally> ask_all(std::span<const CullTest* const> tests, Hard hard, st
                 // 256 boxes for each triangle would take most of the time.
                 if (std::string_view(tests[i]->name) == "interval-fine" && c.serial % 8 != 0) continue;
                 if ((turn + i) % 2 == 0) continue;  // the next sample
+                // Its sides know that the lens is round.
+                if (std::string_view(tests[i]->name) == "hull" && shape == LensShape::kSquare) continue;
                 const std::size_t k = (turn / 2 + i) % 4;
                 const bool kept = asked[i].keeps(c, footprints[k], s);
                 Tally& tally = tallies[i];
@@ -140,13 +142,20 @@ TEST_P(EveryCullTest, AnswersForAnEmptyDomainAndForNumbersThatAreNotFinite) {
     }
 }
 
-// These bounds are the same function of larger ranges. A plane or line that fits a large footprint well may lie, here
-// and there, below the one that fits a small footprint in it, and stage 2 of clip-space draws other lines: for those
-// the law is not even true.
-TEST_P(EveryCullTest, KeepsOverALargerFootprintWhatItKeepsOverASmallerOne) {
+// Most bounds are the same function of larger ranges. A plane or line that fits a large footprint well may lie, here
+// and there, below the one that fits a small footprint in it, and stage 2 of clip-space draws other lines: of those
+// four the law is not true, and they are not asked.
+std::vector<const CullTest*> tests_of_ranges() {
     static const std::set<std::string_view> kOther = {"hyperplane", "ut-vt-lines", "clip-space",
                                                       "clip-space-as-printed"};
-    if (kOther.contains(GetParam()->name)) GTEST_SKIP() << "not a law for this bound";
+    std::vector<const CullTest*> tests;
+    for (const CullTest* test : cull_table())
+        if (!kOther.contains(test->name)) tests.push_back(test);
+    return tests;
+}
+class CullTestOfRanges : public ::testing::TestWithParam<const CullTest*> {};
+
+TEST_P(CullTestOfRanges, KeepsOverALargerFootprintWhatItKeepsOverASmallerOne) {
     Random r(6);
     HardCase c;
     Asked small(*GetParam()), large(*GetParam());
@@ -182,6 +191,7 @@ std::string test_name(const ::testing::TestParamInfo<const CullTest*>& info) {
 }
 INSTANTIATE_TEST_SUITE_P(Culling, EveryCullTest, ::testing::ValuesIn(cull_table().begin(), cull_table().end()),
                          test_name);
+INSTANTIATE_TEST_SUITE_P(Culling, CullTestOfRanges, ::testing::ValuesIn(tests_of_ranges()), test_name);
 
 TEST(Facing, OfAPartOfLensAndShutterIsTheSideThatItsSamplesSee) {
     int wrong = 0, decided = 0, two_sided = 0;

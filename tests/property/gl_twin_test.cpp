@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <numbers>
 #include <pentaprism/error.h>
 
 #include "bound/facing.h"
@@ -114,7 +116,9 @@ Question question_of(const HardCase& c, const Footprint& f, const LocalSample& s
 LocalSample random_sample(Random& r, const HardCase& c) {
     const auto place = [&] { return static_cast<float>(std::floor(r.range(-16, 16) * 256) / 256); };
     const double t = (r.unit() + c.local.segment) / c.local.segments;
-    return {place(), place(), static_cast<float>(r.range(-1, 1)), static_cast<float>(r.range(-1, 1)) * c.ratio(),
+    const double across = std::sqrt(r.unit()), angle = r.range(0, 2 * std::numbers::pi);
+    return {place(), place(), static_cast<float>(across * std::cos(angle)),
+            static_cast<float>(across * std::sin(angle)) * c.ratio(),
             static_cast<float>(std::floor(t * 0x1p24) * 0x1p-24)};
 }
 
@@ -123,7 +127,7 @@ LocalSample any_sample(Random& r, Hard hard, const HardCase& c) {
     LocalSample s;
     SampleHit hit;
     if (r.chance(0.5) || !support::aim(r, c, hard, support::LensShape::kDisk, s, hit)) return random_sample(r, c);
-    if (r.chance(0.3)) support::push_to_border(r, c, s, hit);
+    if (r.chance(0.3)) support::push_to_border(r, c, support::LensShape::kDisk, s, hit);
     return s;
 }
 

@@ -117,12 +117,27 @@ TEST(Dicer, LeavesNoSampleOutAndMakesPiecesOfAboutAPixel) {
     // the triangle itself is small, tiny.
     support::Random r(41);
     support::HardCase hard_case;
-    int hits = 0, missed = 0;
+    int hits = 0, missed = 0, groups = 0, grouped = 0;
     for (int n = 0; n < 300 * support::effort(); ++n) {
         support::make_hard_case(r, support::Hard::kGeneric, hard_case);
         const Dicer dicer(hard_case.centre, hard_case.frame.view.lens.ratio);
         std::vector<Micropolygon> pieces;
-        dicer.dice(hard_case.local, {-16, 16, -16, 16}, [&](const Micropolygon& micro) { pieces.push_back(micro); });
+        Micropolygon group;
+        Dicer::Visitor visitor;
+        visitor.enter_group = [&](const Micropolygon& entered) {
+            group = entered;
+            ++groups;
+            return true;
+        };
+        visitor.visit = [&](const Micropolygon& micro, bool in_group) {
+            pieces.push_back(micro);
+            if (!in_group) return;
+            ++grouped;
+            EXPECT_GE(micro.nearest_w, group.nearest_w * (1 - 1e-6f));
+            EXPECT_TRUE(group.box.x0 <= micro.box.x0 + 1e-4f && micro.box.x1 <= group.box.x1 + 1e-4f &&
+                        group.box.y0 <= micro.box.y0 + 1e-4f && micro.box.y1 <= group.box.y1 + 1e-4f);
+        };
+        dicer.dice(hard_case.local, {-16, 16, -16, 16}, visitor);
         for (const Micropolygon& micro : pieces)
             for (int end = 0; end < 2; ++end) {
                 const LocalTriangle& T = micro.piece;
@@ -157,6 +172,10 @@ TEST(Dicer, LeavesNoSampleOutAndMakesPiecesOfAboutAPixel) {
     std::printf("  %d of %d samples aimed at triangles, many of them at edges and corners, miss all pieces\n", missed,
                 hits);
     EXPECT_GT(hits, 500);
+    EXPECT_GT(groups, 100);
+    EXPECT_GT(grouped, 6 * groups);
+    EXPECT_LT(grouped, 20 * groups);
+    std::printf("  %.1f micropolygons in a group\n", 1.0 * grouped / groups);
     EXPECT_LE(missed, hits / 20);  // aimed at the very edges
 }
 

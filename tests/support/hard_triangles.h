@@ -181,8 +181,14 @@ inline void make_hard_case(Random& r, Hard hard, HardCase& out, bool two_sided =
     ++out.serial;
 }
 
-/// Which lens points a sample may have: those of a disk, or all of its square, as bounds assume.
+/// Which lens points a sample may have: those of a disk, as all samples of pictures, or all of its square, as most
+/// bounds allow.
 enum class LensShape { kDisk, kSquare };
+
+inline bool on_lens(LensShape shape, const HardCase& hard_case, const LocalSample& s) {
+    const double v = double{s.v} / hard_case.frame.view.lens.ratio;
+    return shape == LensShape::kSquare || double{s.u} * s.u + v * v <= 1 + 0x1p-22;
+}
 
 namespace detail {
 
@@ -242,7 +248,7 @@ inline bool aim(Random& r, const HardCase& hard_case, Hard hard, LensShape shape
 
 /// Moves an accepted sample along one coordinate to the last float that is still accepted on the way to a random place:
 /// there the exact test decides by its last bits. t moves in its steps of 2^-24. `hit` is that of the new place.
-inline void push_to_border(Random& r, const HardCase& hard_case, LocalSample& sample, SampleHit& hit) {
+inline void push_to_border(Random& r, const HardCase& hard_case, LensShape shape, LocalSample& sample, SampleHit& hit) {
     const int which = r.below(5);
     float* const coordinate[] = {&sample.hx, &sample.hy, &sample.u, &sample.v, &sample.t};
     const double low[] = {-16, -16, -1, -hard_case.ratio(), 0}, high[] = {16, 16, 1, hard_case.ratio(), 1 - 0x1p-24};
@@ -255,8 +261,9 @@ inline void push_to_border(Random& r, const HardCase& hard_case, LocalSample& sa
         if (middle == inside || middle == outside) break;
         *coordinate[which] = middle;
         const SampleHit there = cover_sample(hard_case.local, sample, hard_case.centre);
-        (there.hit ? inside : outside) = middle;
-        if (there.hit) hit = there;
+        const bool accepted = there.hit && on_lens(shape, hard_case, sample);
+        (accepted ? inside : outside) = middle;
+        if (accepted) hit = there;
     }
     *coordinate[which] = inside;
 }

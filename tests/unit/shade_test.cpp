@@ -201,7 +201,6 @@ TEST(Shade, TheTileSizeDoesNotChangeABit) {
     settings.camera.focus_distance = 3.0;
     settings.shutter.motion_segments = 2;
     ShadingOptions options;
-    options.spp = settings.image.spp;
     options.environment = std::make_shared<const Environment>(Environment::sky());
     for (const ShadingRate rate : {ShadingRate::kPixel, ShadingRate::kDecoupled, ShadingRate::kSample}) {
         options.rate = rate;
@@ -238,7 +237,6 @@ TEST(Shade, CellsShowWhatSamplesShowWithFewerEvaluations) {
     settings.camera.lens_radius = 0.1;
     settings.camera.focus_distance = 4.0;
     ShadingOptions options;
-    options.spp = settings.image.spp;
     options.rate = ShadingRate::kSample;
     options.texture_filter = TextureFilter::kPixel;
     const std::vector<float> samples = draw(scene, settings, 32, options);
