@@ -54,8 +54,8 @@ std::vector<std::string> bench_default_scenes();
 
 /// One method on one frame. Times are wall times in milliseconds with all threads of the plan.
 struct BenchRow {
-    std::string scene, effect, method, backend = "cpu";
-    bool conservative = true;     ///< the method promises to lose no sample
+    std::string scene, effect, method, backend = "cpu";  ///< or gl-geometry, gl-compute
+    bool conservative = true;                            ///< the method promises to lose no sample
     bool own_arithmetic = false;  ///< decides by other arithmetic than the exact test: differs at edges and depth ties
     bool own_samples = false;     ///< sees by other samples than the rest, so that the picture is another one
     std::int64_t samples = 0;     ///< of the tiles that were measured (BenchCell::share)

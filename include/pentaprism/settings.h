@@ -145,9 +145,17 @@ enum class Backend {
          ///< without it. Of the visibility methods those that rasterize whole triangles
 };
 
+/// How kGl finds what is seen. Hits and counts are the same.
+enum class GlPipeline {
+    kAuto,      ///< kCompute, unless the scene is too large for the device's storage blocks
+    kGeometry,  ///< the papers' pipeline: a geometry shader emits bounds, a framebuffer keeps the nearest
+    kCompute    ///< compute shaders sort triangles into tiles
+};
+
 struct MethodSettings {
     VisibilityMethod visibility = VisibilityMethod::kStochastic;
     Backend backend = Backend::kCpu;
+    GlPipeline gl_pipeline = GlPipeline::kAuto;
     /// "auto" or a combination of culling_tests(); kRaytrace and kMicropolygon have no use for one: "auto" alone.
     std::string culling = "auto";
     std::string shading = "decoupled";  ///< how often visible surfaces are shaded

@@ -20,8 +20,9 @@ struct RenderStats {
     std::int64_t shaded = 0;   ///< shading evaluations
     double peak_mb = 0.0;      ///< largest resident memory of the process so far
     int threads = 0;
-    std::string isa;     ///< avx512, avx2, neon or scalar
-    std::string device;  ///< of Backend::kGl, as its driver calls it; else empty
+    std::string isa;          ///< avx512, avx2, neon or scalar
+    std::string device;       ///< of Backend::kGl, as its driver calls it; else empty
+    std::string gl_pipeline;  ///< of Backend::kGl what GlPipeline::kAuto chose: geometry or compute; else empty
 
     /// Sample test efficiency: covered / tested, 0 when nothing was tested.
     double ste() const { return tested ? static_cast<double>(covered) / static_cast<double>(tested) : 0.0; }

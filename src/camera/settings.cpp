@@ -171,6 +171,8 @@ void check(const MethodSettings& method) {
     }
     if (!culls && method.backend == Backend::kGl)
         refuse(fmt::format("--backend gl: --visibility {} is the processor's alone", name_of(method.visibility)));
+    if (method.backend == Backend::kCpu && method.gl_pipeline != GlPipeline::kAuto)
+        refuse("--gl-pipeline: only --backend gl has one; give that, too, or leave it out");
     if (method.shading != "pixel" && method.shading != "sample" && method.shading != "decoupled")
         refuse(fmt::format("--shading: '{}' is not pixel, sample or decoupled", method.shading));
     check_whole("--threads", method.threads, 0, 1024);

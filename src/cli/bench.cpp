@@ -30,6 +30,7 @@ struct BenchCommand {
     std::optional<std::int64_t> spp, frame, seed, threads, runs, tests;
     std::optional<double> seconds, fps;
     Backend backend = Backend::kCpu;
+    GlPipeline gl_pipeline = GlPipeline::kAuto;
     fs::path folder;
     Verbosity verbosity;
 };
@@ -72,6 +73,7 @@ BenchPlan plan_of(const BenchCommand& command) {
     if (command.seed) settings.method.seed = static_cast<std::uint32_t>(*command.seed);
     if (command.threads) settings.method.threads = static_cast<int>(*command.threads);
     settings.method.backend = command.backend;
+    settings.method.gl_pipeline = command.gl_pipeline;
     if (command.runs) plan.runs = static_cast<int>(*command.runs);
     if (command.tests) plan.most_tests = *command.tests;
     if (command.seconds) plan.seconds = *command.seconds;
@@ -136,6 +138,9 @@ void add_what(CLI::App& command, BenchCommand& bench) {
     add_value(command, group, "--backend", "cpu|gl",
               "What is measured: the processor, or OpenGL, compared with the processor's hits (default cpu)",
               [&](const std::string& text) { bench.backend = parse_backend(text); });
+    add_value(command, group, "--gl-pipeline", "auto|geometry|compute",
+              "How --backend gl does it: the papers' geometry shader, or tiles in compute shaders (default auto)",
+              [&](const std::string& text) { bench.gl_pipeline = parse_gl_pipeline(text); });
     add_value(command, group, "--peer", "embree", "Time visibility against this ray tracer, too",
               [&](const std::string& text) {
                   bench.embree = parse_choice<bool>("--peer", text, {{"embree", true}});

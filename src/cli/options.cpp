@@ -207,6 +207,9 @@ void add_method_options(CLI::App& command, MethodSettings& method) {
     add_value(command, group, "--backend", "cpu|gl",
               "What finds visible surfaces: the processor, or OpenGL 4.5 (default cpu)",
               [&](const std::string& text) { method.backend = parse_backend(text); });
+    add_value(command, group, "--gl-pipeline", "auto|geometry|compute",
+              "How --backend gl does it: the papers' geometry shader, or tiles in compute shaders (default auto)",
+              [&](const std::string& text) { method.gl_pipeline = parse_gl_pipeline(text); });
     add_value(command, group, "--shading", "pixel|sample|decoupled",
               "How often visible surfaces are shaded (default decoupled)", [&](const std::string& text) {
                   method.shading = parse_choice<std::string>(
@@ -282,6 +285,12 @@ RollingShutter parse_rolling_shutter(const std::string& text) {
 
 Backend parse_backend(const std::string& text) {
     return parse_choice<Backend>("--backend", text, {{"cpu", Backend::kCpu}, {"gl", Backend::kGl}});
+}
+
+GlPipeline parse_gl_pipeline(const std::string& text) {
+    return parse_choice<GlPipeline>(
+        "--gl-pipeline", text,
+        {{"auto", GlPipeline::kAuto}, {"geometry", GlPipeline::kGeometry}, {"compute", GlPipeline::kCompute}});
 }
 
 void refuse_as_planned(const std::string& what) {

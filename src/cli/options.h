@@ -20,6 +20,7 @@ CLI::Option* add_value(CLI::App& command, const std::string& group, const std::s
 std::vector<ShutterPoint> parse_shutter_curve(const std::string& text);
 RollingShutter parse_rolling_shutter(const std::string& text);
 Backend parse_backend(const std::string& text);
+GlPipeline parse_gl_pipeline(const std::string& text);
 
 void add_scene_argument(CLI::App& command, std::string& scene);
 

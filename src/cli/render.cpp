@@ -141,6 +141,7 @@ Json to_json(const RenderStats& stats, double cpu_ms, const RenderCommand& comma
     json["threads"] = stats.threads;
     json["isa"] = stats.isa;
     if (!stats.device.empty()) json["device"] = stats.device;
+    if (!stats.gl_pipeline.empty()) json["gl_pipeline"] = stats.gl_pipeline;
     return json;
 }
 
@@ -228,7 +229,7 @@ int render(RenderCommand& command) {
             if (stats_for_each_frame) write_text_file(frame_file(command.stats, frame), to_text(json));
             all_stats.push_back(std::move(json));
         }
-        if (!stats.device.empty()) print_debug("device: " + stats.device);
+        if (!stats.device.empty()) print_debug("device: " + stats.device + ", pipeline: " + stats.gl_pipeline);
         for (const auto& [stage, ms] : stats.times_ms)
             print_debug(fmt::format("frame {}: {} {:.1f} ms", frame, stage, ms));
         progress.end_frame(output->name(frame));

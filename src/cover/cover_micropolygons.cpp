@@ -194,8 +194,7 @@ class MicropolygonTile {
         if (triangle.alpha_tested) {
             const SampleHit of_triangle = project_sample(triangle, sample);
             const int index = work_.samples.indices(bx, by)[static_cast<std::size_t>(slot) * kLanes + lane];
-            if (!is_opaque_at(work_.frame, triangle.triangle, of_triangle.barycentrics, px, py, index,
-                              work_.samples.spp()))
+            if (!is_opaque_at(work_.frame, triangle.triangle, of_triangle.barycentrics, px, py, index, work_.samples))
                 return;
         }
         hits_.depth[at] = hit.depth;

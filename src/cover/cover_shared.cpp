@@ -167,7 +167,7 @@ HWY_NOINLINE Mask decide_opacity(F f, const TileState& state, const LocalTriangl
         const int px = tile.cell_x() * kCellSize + block % kCellBlocks * kBlockSize + lane % kBlockSize;
         const int py = tile.cell_y() * kCellSize + block / kCellBlocks * kBlockSize + lane / kBlockSize;
         const float barycentrics[3] = {b[0][k], b[1][k], b[2][k]};
-        if (!is_opaque_at(state.work.frame, T.triangle, barycentrics, px, py, index, spp)) ask[k] = 0;
+        if (!is_opaque_at(state.work.frame, T.triangle, barycentrics, px, py, index, state.work.samples)) ask[k] = 0;
     }
     return hn::RebindMask(f, hn::Lt(hn::Load(i, ask), hn::Zero(i)));
 }

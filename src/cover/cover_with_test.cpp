@@ -12,7 +12,7 @@ void cover_with_test(const TileWork& work, const Culling& culling, Hits& hits, C
         if (triangle.alpha_tested) {
             const int bx = at.px / kBlockSize, by = at.py / kBlockSize;
             const int index = work.samples.indices(bx, by)[at.slot * kLanes + at.lane];
-            if (!is_opaque_at(work.frame, triangle.triangle, hit.barycentrics, at.px, at.py, index, work.samples.spp()))
+            if (!is_opaque_at(work.frame, triangle.triangle, hit.barycentrics, at.px, at.py, index, work.samples))
                 return false;
         }
         depth = hit.depth;

@@ -127,11 +127,15 @@ HWY_INLINE Words permuted(U u, Words i, std::uint32_t n, Words seed) {
 }
 
 // opacity_threshold() of frame/opacity.h in lanes.
-HWY_INLINE Vec opacity_thresholds(F f, std::uint32_t triangle, Words px, Words py, Words index, std::uint32_t spp) {
+HWY_INLINE Vec opacity_thresholds(F f, std::uint32_t triangle, Words px, Words py, Words index,
+                                  const OpacityPattern& pattern) {
     const U u;
     const auto to_float = [&](Words x) HWY_ATTR { return hn::ConvertTo(f, hn::BitCast(I(), x)); };
     const Words pixel = mixed_bits(u, hn::Add(mixed_bits(u, px), py));
-    const Words seed = mixed_bits(u, hn::Add(pixel, mixed_bits(u, hn::Set(u, triangle + 0x9e3779b9u))));
+    const auto spp = static_cast<std::uint32_t>(pattern.spp);
+    const Words salt =
+        hn::Add(mixed_bits(u, hn::Set(u, triangle + 0x9e3779b9u)), mixed_bits(u, hn::Set(u, pattern.seed)));
+    const Words seed = mixed_bits(u, hn::Add(pixel, salt));
     const Words random = mixed_bits(u, hn::Add(seed, hn::Add(index, hn::Set(u, 1u))));
     const Vec offset = hn::Mul(to_float(hn::ShiftRight<8>(random)), hn::Set(f, 0x1p-24f));
     const Vec place = hn::Add(to_float(permuted(u, index, spp, seed)), offset);
@@ -158,8 +162,8 @@ HWY_NOINLINE Mask exceeds_threshold(F f, const TileWork& work, std::uint32_t tri
         py[k] = static_cast<std::uint32_t>(s.py);
         index[k] = static_cast<std::uint32_t>(s.index);
     }
-    const Vec threshold = opacity_thresholds(f, triangle, hn::Load(u, px), hn::Load(u, py), hn::Load(u, index),
-                                             static_cast<std::uint32_t>(work.samples.spp()));
+    const Vec threshold =
+        opacity_thresholds(f, triangle, hn::Load(u, px), hn::Load(u, py), hn::Load(u, index), work.samples);
     return hn::And(ask, hn::Gt(alpha, threshold));
 }
 
@@ -174,7 +178,7 @@ HWY_NOINLINE Mask decide_glass(F f, const TileWork& work, std::uint32_t triangle
         const int k = std::countr_zero(m);
         const float at[3] = {barycentrics[0][k], barycentrics[1][k], barycentrics[2][k]};
         const SampleOfPixel s = sample_of(k);
-        there[k] = is_opaque_at(work.frame, triangle, at, s.px, s.py, s.index, work.samples.spp()) ? 1 : 0;
+        there[k] = is_opaque_at(work.frame, triangle, at, s.px, s.py, s.index, work.samples) ? 1 : 0;
     }
     return hn::And(hit, hn::Gt(hn::Load(f, there), hn::Zero(f)));
 }

@@ -84,11 +84,11 @@ float transmission(const Frame& frame, const Material& material, const Primitive
 
 // Stratified over the pixel's samples, independent between triangles: two layers, also of one mesh, must not hide
 // together.
-float opacity_threshold(std::uint32_t triangle, int px, int py, int sample_index, int spp) {
+float opacity_threshold(std::uint32_t triangle, int px, int py, int sample_index, const OpacityPattern& pattern) {
     const std::uint32_t pixel = mix(mix(static_cast<std::uint32_t>(px)) + static_cast<std::uint32_t>(py));
-    const std::uint32_t seed = mix(pixel + mix(triangle + 0x9e3779b9u));
+    const std::uint32_t seed = mix(pixel + mix(triangle + 0x9e3779b9u) + mix(pattern.seed));
     const std::uint32_t index = static_cast<std::uint32_t>(sample_index);
-    const std::uint32_t n = static_cast<std::uint32_t>(std::max(1, spp));
+    const std::uint32_t n = static_cast<std::uint32_t>(std::max(1, pattern.spp));
     const float offset = static_cast<float>(mix(seed + index + 1u) >> 8) * 0x1p-24f;
     return std::min((static_cast<float>(permuted(index % n, n, seed)) + offset) / static_cast<float>(n),
                     1.0f - 0x1p-24f);
@@ -148,10 +148,10 @@ float opacity_at(const Frame& frame, std::uint32_t triangle, const float barycen
 }
 
 bool is_opaque_at(const Frame& frame, std::uint32_t triangle, const float barycentrics[3], int px, int py,
-                  int sample_index, int spp) {
+                  int sample_index, const OpacityPattern& pattern) {
     const float opacity = opacity_at(frame, triangle, barycentrics);
     if (opacity <= 0.0f || opacity >= 1.0f) return opacity >= 1.0f;  // thresholds are in [0, 1)
-    return opacity > opacity_threshold(triangle, px, py, sample_index, spp);
+    return opacity > opacity_threshold(triangle, px, py, sample_index, pattern);
 }
 
 bool is_see_through(const Frame& frame, std::uint32_t triangle) {

@@ -6,15 +6,26 @@
 #include <glm/vec2.hpp>
 
 #include "frame/frame.h"
+#include "sample/sample_table.h"
 
 namespace pentaprism {
 
+/// The samples of a picture, over which thresholds of opacity are stratified: samples per pixel, and the seed of their
+/// pattern, so that pictures of other seeds have other thresholds.
+struct OpacityPattern {
+    int spp;
+    std::uint32_t seed;
+
+    OpacityPattern(int samples_per_pixel, std::uint32_t of_pattern) : spp(samples_per_pixel), seed(of_pattern) {}
+    OpacityPattern(const SampleTable& samples) : spp(samples.spp()), seed(samples.seed()) {}
+};
+
 /// MASK: bilinear alpha of mip 0 at the sample's own barycentrics, times factor and vertex colour, reaches the cutoff.
 /// Surfaces that let light through: as blended ones, see_through(). BLEND: stochastic transparency (Enderton, Sintorn,
-/// Shirley, Luebke 2010): alpha exceeds a threshold that is a hash of (triangle, pixel, sample index), stratified over
-/// the samples of the pixel (Laine & Karras 2011). OPAQUE: true. Thread-safe; no allocation.
+/// Shirley, Luebke 2010): alpha exceeds a threshold that is a hash of (triangle, pixel, sample index, seed), stratified
+/// over the samples of the pixel (Laine & Karras 2011). OPAQUE: true. Thread-safe; no allocation.
 bool is_opaque_at(const Frame& frame, std::uint32_t triangle, const float barycentrics[3], int px, int py,
-                  int sample_index, int spp);
+                  int sample_index, const OpacityPattern& pattern);
 
 /// The share of light that the surface stops there: 0 or 1 of a MASK, the alpha of BLEND, less of glass. What
 /// is_opaque_at() decides by; it may be above 1.
@@ -39,7 +50,7 @@ struct OpacityTerms {
 OpacityTerms opacity_terms(const Frame& frame, std::uint32_t triangle);
 
 /// What alpha must exceed at a sample of a blended triangle; in [0, 1).
-float opacity_threshold(std::uint32_t triangle, int px, int py, int sample_index, int spp);
+float opacity_threshold(std::uint32_t triangle, int px, int py, int sample_index, const OpacityPattern& pattern);
 
 /// Share of samples that see through a thin surface of this transmission (KHR_materials_transmission): as stochastic
 /// transparency, less than all, so that some samples are left to show what it reflects. Shading scales that up.

@@ -7,6 +7,9 @@ namespace {
 
 // Samples that are kept at once: 8 bytes each here, 24 on the device for those of a pass.
 constexpr std::int64_t kMostSamples = 1 << 24;
+// Cells of a region: a triangle all over it is in 32768 tiles of gl/tiles.glsl, and loops over those must stay short
+// (gl/tile_pass.cpp).
+constexpr std::int64_t kMostCells = 2048;
 
 int cells_upto(int pixel) {
     return (pixel + kCellSize - 1) / kCellSize;
@@ -14,7 +17,7 @@ int cells_upto(int pixel) {
 
 }  // namespace
 
-GlRasterizer::GlRasterizer(const Frame& frame, const SampleTable& table, const std::string& culling,
+GlRasterizer::GlRasterizer(const Frame& frame, const SampleTable& table, const MethodSettings& method,
                            const PixelRect& limits)
     : table_(table),
       limits_(limits),
@@ -24,13 +27,14 @@ GlRasterizer::GlRasterizer(const Frame& frame, const SampleTable& table, const s
       columns_(cells_upto(limits.x1) - first_cell_x_),
       rows_(cells_upto(limits.y1) - first_cell_y_) {
     const std::int64_t samples = std::min(kMostSamples, device_.most_entries());
-    const int cells = static_cast<int>(std::max<std::int64_t>(1, samples / (kCellSize * kCellSize * table.slots())));
+    const int cells =
+        static_cast<int>(std::clamp<std::int64_t>(samples / (kCellSize * kCellSize * table.slots()), 1, kMostCells));
     const int side = device_.max_size() / kCellSize;
     region_columns_ = std::min({columns_, cells, side});
     region_rows_ = std::clamp(cells / region_columns_, 1, std::min(rows_, side));
     const Device::Current current(device_);
     pipeline_ =
-        std::make_unique<Pipeline>(device_, frame, table, culling, Region{0, 0, region_columns_, region_rows_, {}});
+        std::make_unique<Pipeline>(device_, frame, table, method, Region{0, 0, region_columns_, region_rows_, {}});
 }
 
 GlRasterizer::~GlRasterizer() {
@@ -71,6 +75,10 @@ std::shared_ptr<const RegionHits> GlRasterizer::hits_of(const Region& region, co
         std::int64_t{tile.x1 - std::max(tile.x0, limits_.x0)} * (tile.y1 - std::max(tile.y0, limits_.y0));
     if (hits->pixels_left <= 0) rendered_.erase(key);
     return kept;
+}
+
+const char* GlRasterizer::pipeline() const {
+    return pipeline_->takes_compute() ? "compute" : "geometry";
 }
 
 void GlRasterizer::cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map) const {

@@ -1,8 +1,6 @@
 #pragma once
-// The papers' pipeline on OpenGL (McGuire, Enderton, Shirley, Luebke 2010; Wu 2013): the vertex shader takes both ends
-// of a motion segment, the geometry shader emits the conservative bound, the fragment shader runs the culling test and
-// the exact test for one sample, the framebuffer keeps the nearest of each sample. As many samples of a pixel in one
-// pass as the driver has; all passes together are the table's samples.
+// Tiles from regions of the picture that OpenGL renders at once (gl/pipeline.h), in passes of some samples of each
+// pixel; all passes together are the table's samples.
 
 #include <map>
 #include <memory>
@@ -15,9 +13,10 @@ namespace pentaprism::gl {
 
 class GlRasterizer : public Rasterizer {
   public:
-    GlRasterizer(const Frame& frame, const SampleTable& table, const std::string& culling, const PixelRect& limits);
+    GlRasterizer(const Frame& frame, const SampleTable& table, const MethodSettings& method, const PixelRect& limits);
     ~GlRasterizer() override;
     void cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map) const override;
+    const char* pipeline() const override;
 
   private:
     Region region_of(int cell_x, int cell_y) const;

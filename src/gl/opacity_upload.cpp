@@ -4,9 +4,39 @@
 #include <glm/vec4.hpp>
 #include <map>
 #include <pentaprism/error.h>
+#include <vector>
 
 namespace pentaprism::gl {
 namespace {
+
+// As surface_of() in frame/opacity.glsl reads it: five times four numbers.
+struct SurfaceRecord {
+    std::int32_t mode = 0;
+    std::uint32_t flags = 0;  // corners' alphas, texture, nearest texel, turned texture
+    std::int32_t first_record = 0, first_code = 0;
+    float cutoff = 0, factor = 0, texture_alpha = 0, unused_b = 0;
+    std::int32_t size[2] = {}, wrap[2] = {};
+    float matrix[4] = {};
+    float offset[2] = {}, unused_e[2] = {};
+};
+static_assert(sizeof(SurfaceRecord) == 5 * 4 * sizeof(float));
+
+void set_terms(const OpacityTerms& terms, SurfaceRecord& surface) {
+    surface.flags = terms.colored ? 1 : 0;
+    surface.cutoff = terms.cutoff;
+    surface.factor = terms.factor;
+    surface.texture_alpha = terms.texture_alpha;
+    if (terms.texture == nullptr) return;
+    surface.flags |= 2u | (terms.ref->nearest ? 4u : 0u) | (terms.ref->rotation != 0.0f ? 8u : 0u);
+    surface.size[0] = terms.texture->width();
+    surface.size[1] = terms.texture->height();
+    surface.wrap[0] = static_cast<std::int32_t>(terms.ref->wrap_s);
+    surface.wrap[1] = static_cast<std::int32_t>(terms.ref->wrap_t);
+    const glm::vec4 matrix = uv_matrix(*terms.ref);
+    for (int i = 0; i < 4; ++i) surface.matrix[i] = matrix[i];
+    surface.offset[0] = terms.ref->offset.x;
+    surface.offset[1] = terms.ref->offset.y;
+}
 
 void append_triangle(const Frame& frame, std::uint32_t triangle, std::vector<glm::vec4>& records) {
     const OpacityTerms terms = opacity_terms(frame, triangle);
@@ -34,17 +64,20 @@ Object<TextureKind> view_of(const Buffer& buffer, GLenum format) {
 OpacityUpload::OpacityUpload(const Frame& frame) {
     std::vector<glm::vec4> records;
     std::vector<std::uint8_t> codes;
+    std::vector<SurfaceRecord> surfaces;
     std::map<const Pyramid*, int> first_code;  // textures that were met before
     for (const Part& part : frame.parts) {
-        Surface& surface = surfaces_.emplace_back();
+        SurfaceRecord& surface = surfaces.emplace_back();
         if (part.alpha_mode == AlphaMode::kOpaque || part.material == kNone || part.triangle_count == 0) continue;
-        surface.mode = part.alpha_mode;
-        surface.terms = opacity_terms(frame, part.first_triangle);
-        if (surface.terms.glass) refuse_glass(frame, part);
-        surface.first_record = static_cast<int>(records.size() / 3);
+        // All but uv and colours are the same for all triangles.
+        const OpacityTerms terms = opacity_terms(frame, part.first_triangle);
+        if (terms.glass) refuse_glass(frame, part);
+        surface.mode = static_cast<std::int32_t>(part.alpha_mode);
+        surface.first_record = static_cast<std::int32_t>(records.size() / 3);
+        set_terms(terms, surface);
         for (std::uint32_t t = 0; t < part.triangle_count; ++t)
             append_triangle(frame, part.first_triangle + t, records);
-        const Pyramid* texture = surface.terms.texture;
+        const Pyramid* texture = terms.texture;
         if (texture == nullptr) continue;
         const auto [place, is_new] = first_code.emplace(texture, static_cast<int>(codes.size()));
         surface.first_code = place->second;
@@ -53,35 +86,16 @@ OpacityUpload::OpacityUpload(const Frame& frame) {
     }
     records_ = Buffer(records.size() * sizeof(glm::vec4), records.data());
     codes_ = Buffer(codes.size(), codes.data());
+    surfaces_ = Buffer(surfaces.size() * sizeof(SurfaceRecord), surfaces.data());
     record_view_ = view_of(records_, GL_RGBA32F);
     code_view_ = view_of(codes_, GL_R8UI);
+    surface_view_ = view_of(surfaces_, GL_RGBA32UI);
 }
 
 void OpacityUpload::bind(GLuint first) const {
     glBindTextureUnit(first, record_view_);
     glBindTextureUnit(first + 1, code_view_);
-}
-
-void OpacityUpload::set(const Program& program, std::size_t part) const {
-    const Surface& surface = surfaces_[part];
-    program.set("alpha_mode", static_cast<int>(surface.mode));
-    if (surface.mode == AlphaMode::kOpaque) return;
-    const OpacityTerms& terms = surface.terms;
-    program.set("alpha_cutoff", terms.cutoff);
-    program.set("alpha_factor", terms.factor);
-    program.set("corner_alphas", terms.colored ? 1 : 0);
-    program.set("texture_alpha", terms.texture_alpha);
-    program.set("first_record", surface.first_record);
-    program.set("textured", terms.texture != nullptr ? 1 : 0);
-    if (terms.texture == nullptr) return;
-    const glm::vec4 matrix = uv_matrix(*terms.ref);
-    program.set("first_code", surface.first_code);
-    program.set("texture_size", terms.texture->width(), terms.texture->height());
-    program.set("texture_wrap", static_cast<int>(terms.ref->wrap_s), static_cast<int>(terms.ref->wrap_t));
-    program.set("nearest_texel", terms.ref->nearest ? 1 : 0);
-    program.set("texture_turned", terms.ref->rotation != 0.0f ? 1 : 0);
-    program.set("texture_matrix", matrix.x, matrix.y, matrix.z, matrix.w);
-    program.set("texture_offset", terms.ref->offset.x, terms.ref->offset.y);
+    glBindTextureUnit(first + 2, surface_view_);
 }
 
 }  // namespace pentaprism::gl

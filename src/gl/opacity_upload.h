@@ -2,10 +2,8 @@
 // What decides on the device whether a covered sample of a mask or of a blended surface is a hit: frame/opacity.glsl
 // reads it. All of it needs a Device::Current.
 
-#include <vector>
-
 #include "frame/opacity.h"
-#include "gl/program.h"
+#include "gl/objects.h"
 
 namespace pentaprism::gl {
 
@@ -14,22 +12,12 @@ class OpacityUpload {
     /// Throws Error(kBackend) for glass, by the name of its material.
     explicit OpacityUpload(const Frame& frame);
 
-    /// The two buffers, to texture units `first` and `first` + 1.
+    /// Its three buffers, to texture units from `first` on.
     void bind(GLuint first) const;
 
-    /// The uniforms of a part.
-    void set(const Program& program, std::size_t part) const;
-
   private:
-    struct Surface {
-        AlphaMode mode = AlphaMode::kOpaque;
-        OpacityTerms terms;  ///< of the part's first triangle: all but uv and colours are the part's
-        int first_record = 0, first_code = 0;
-    };
-
-    std::vector<Surface> surfaces_;  // of each part
-    Buffer records_, codes_;
-    Object<TextureKind> record_view_, code_view_;
+    Buffer records_, codes_, surfaces_;
+    Object<TextureKind> record_view_, code_view_, surface_view_;
 };
 
 }  // namespace pentaprism::gl

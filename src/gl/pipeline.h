@@ -1,11 +1,10 @@
 #pragma once
 // What the device keeps of a frame, and the passes over it. All of it needs a Device::Current.
 
-#include "gl/device.h"
-#include "gl/opacity_upload.h"
-#include "gl/program.h"
-#include "gl/region.h"
-#include "gl/upload.h"
+#include <memory>
+#include <pentaprism/settings.h>
+
+#include "gl/pass.h"
 
 namespace pentaprism::gl {
 
@@ -20,27 +19,25 @@ struct RegionHits {
 class Pipeline {
   public:
     /// `largest`: no region has more columns or rows of cells. Frame and table must outlive it.
-    Pipeline(Device& device, const Frame& frame, const SampleTable& table, const std::string& culling,
+    Pipeline(Device& device, const Frame& frame, const SampleTable& table, const MethodSettings& method,
              const Region& largest);
 
     RegionHits render(const Region& region);
+    bool takes_compute() const { return compute_; }
 
   private:
-    void set_uniforms(const Region& region, int pass_slots) const;
-    void draw() const;
-    void collect(const Region& region, int first_slot, int pass_slots, RegionHits& hits);
+    void receive(const Region& region, int first_slot, int count, RegionHits& hits);
 
-    const Frame& frame_;
     const SampleTable& table_;
+    Culling culling_;
+    bool compute_;
     int slots_, width_, height_;
     FrameUpload geometry_;
     OpacityUpload opacity_;
     SampleUpload samples_;
-    const Program &raster_, &collector_;
     Buffer collected_;
-    Object<TextureKind> seen_, tested_, covered_;
-    Object<RenderbufferKind> depth_;
-    Object<FramebufferKind> framebuffer_;
+    Object<TextureKind> tested_, covered_;
+    std::unique_ptr<Pass> pass_;
     std::vector<glm::uvec2> received_;
 };
 

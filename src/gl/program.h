@@ -51,6 +51,7 @@ class Program {
         glProgramUniform4f(object_, at(name), a, b, c, d);
     }
     void set(const char* name, int a, int b) const { glProgramUniform2i(object_, at(name), a, b); }
+    void set(const char* name, unsigned a, unsigned b) const { glProgramUniform2ui(object_, at(name), a, b); }
     void set(const char* name, int a, int b, int c, int d) const { glProgramUniform4i(object_, at(name), a, b, c, d); }
 
   private:

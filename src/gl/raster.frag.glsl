@@ -7,6 +7,7 @@
 #include "gl/samples.glsl"
 
 uniform ivec4 region;
+uniform int part;
 uniform uint first_triangle;  // of the part
 uniform float segments, segment;
 uniform bool two_sided;
@@ -45,8 +46,8 @@ void main() {
     SampleHit hit = cover_sample(T, point, centre);
     if (!hit.hit) discard;
     imageAtomicAdd(covered, place, 1u);
-    if (alpha_mode != kOpaque && !is_opaque_at(bound.triangle, bound.triangle - first_triangle, hit.barycentrics, pixel,
-                                               index_of(packed_sample)))
+    if (!is_opaque_at(surface_of(part), bound.triangle, bound.triangle - first_triangle, hit.barycentrics, pixel,
+                      index_of(packed_sample)))
         discard;
     seen = uvec2(bound.triangle, floatBitsToUint(hit.depth));
     // Depths are below 1e12: divided by 2^41 they keep every bit and lie in [0, 1].

@@ -6,9 +6,7 @@
 // pixel for the rasterizer's positions: all pixels of which a part is in the hull, and some more, which the fragment shader
 // refuses. Triangles at the camera plane have their box.
 
-#include "bound/facing.glsl"
-#include "bound/screen_bounds.glsl"
-#include "frame/opacity.glsl"
+#include "gl/bound.glsl"
 #ifdef DRAW_HULL
 #include "gl/hull_strip.glsl"
 #endif
@@ -16,6 +14,7 @@
 layout(triangles) in;
 layout(triangle_strip, max_vertices = 12) out;
 
+uniform int part;
 uniform uint first_triangle;  // of the part
 uniform bool two_sided;
 uniform ivec4 region;  // x0, x1, y0, y1: the pixels of the framebuffer
@@ -34,18 +33,6 @@ out Bound {
     flat ivec4 pixels;
     flat uint triangle;
 } bound;
-
-const float kLargestCoordinate = 1e12;  // as the CPU's bins drop what is larger
-
-bool is_usable(MovingTriangle m) {
-    for (int i = 0; i < 3; ++i) {
-        bvec4 open = lessThanEqual(abs(m.q[i]), vec4(kLargestCoordinate));
-        bvec4 close = lessThanEqual(abs(m.r[i]), vec4(kLargestCoordinate));
-        if (!all(open) || !all(close)) return false;
-    }
-    return all(lessThanEqual(abs(m.z_q), vec3(kLargestCoordinate))) &&
-           all(lessThanEqual(abs(m.z_r), vec3(kLargestCoordinate)));
-}
 
 // `place`: in pixels of the framebuffer.
 void emit(MovingTriangle m, vec4 box, ivec4 pixels, vec2 place) {
@@ -69,12 +56,9 @@ void main() {
         m.z_q[i] = corner[i].z_open;
         m.z_r[i] = corner[i].z_close;
     }
-    if (!is_usable(m) || opacity_class(uint(gl_PrimitiveIDIn)) == kClear) return;
-    ScreenBox bounds = screen_bounds(m);
-    ivec4 pixels = covered_pixels(bounds, region);
-    if (pixels.x >= pixels.y || pixels.z >= pixels.w) return;
-    if (!two_sided && facing(m) == kBack) return;
-    vec4 box = exact_box(m, bounds);
+    ivec4 pixels;
+    vec4 box;
+    if (!bound_triangle(m, surface_of(part), uint(gl_PrimitiveIDIn), two_sided, region, pixels, box)) return;
 #ifdef DRAW_HULL
     vec2 outline[kMostCorners];
     int corners = reaches_camera(m) ? 0 : hull_outline(m, outline);

@@ -13,8 +13,8 @@ namespace pentaprism {
 #ifdef PENTAPRISM_HAVE_GL
 
 std::unique_ptr<const Rasterizer> make_gl_rasterizer(const Frame& frame, const SampleTable& table,
-                                                     const std::string& culling, const PixelRect& limits) {
-    return std::make_unique<const gl::GlRasterizer>(frame, table, culling, limits);
+                                                     const MethodSettings& method, const PixelRect& limits) {
+    return std::make_unique<const gl::GlRasterizer>(frame, table, method, limits);
 }
 
 std::vector<std::string> gl_culling_choices() {
@@ -36,7 +36,7 @@ namespace {
 }
 }  // namespace
 
-std::unique_ptr<const Rasterizer> make_gl_rasterizer(const Frame&, const SampleTable&, const std::string&,
+std::unique_ptr<const Rasterizer> make_gl_rasterizer(const Frame&, const SampleTable&, const MethodSettings&,
                                                      const PixelRect&) {
     refuse();
 }

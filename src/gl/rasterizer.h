@@ -3,6 +3,7 @@
 // OpenGL (gl/gl_rasterizer.h). A build may be without it.
 
 #include <memory>
+#include <pentaprism/settings.h>
 #include <string>
 #include <vector>
 
@@ -18,13 +19,16 @@ class Rasterizer {
     /// As cover_with_test(): hits, counts and map of a tile. `hits` has been reset. Thread-safe; the pixels around are
     /// rendered with the first tile that asks, while others wait.
     virtual void cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map) const = 0;
+
+    /// GlPipeline that does it: geometry or compute.
+    virtual const char* pipeline() const = 0;
 };
 
-/// `culling`: as `--culling` takes it. `limits`: the pixels that will be asked for. Frame and table must outlive it.
-/// Throws Error(kBackend) in a build without OpenGL, without a driver and when it fails, Error(kUsage) for culling that
-/// is not there in GLSL.
+/// Of `method` culling and gl_pipeline count. `limits`: the pixels that will be asked for. Frame and table must outlive
+/// it. Throws Error(kBackend) in a build without OpenGL, without a driver and when it fails, Error(kUsage) for culling
+/// that is not there in GLSL.
 std::unique_ptr<const Rasterizer> make_gl_rasterizer(const Frame& frame, const SampleTable& table,
-                                                     const std::string& culling, const PixelRect& limits);
+                                                     const MethodSettings& method, const PixelRect& limits);
 
 /// What `--culling` takes with this backend, without combinations; empty in a build without it.
 std::vector<std::string> gl_culling_choices();

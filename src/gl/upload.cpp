@@ -36,6 +36,12 @@ void FrameUpload::bind() const {
     glBindVertexArray(attributes_);
 }
 
+void FrameUpload::bind_storage(GLuint first) const {
+    points_.bind(GL_SHADER_STORAGE_BUFFER, first);
+    corners_.bind(GL_SHADER_STORAGE_BUFFER, first + 1);
+    depths_.bind(GL_SHADER_STORAGE_BUFFER, first + 2);
+}
+
 void FrameUpload::draw(const Part& part, int segment) const {
     const auto read_at = [&](GLuint attribute, GLuint buffer, std::size_t knot, std::size_t size) {
         glVertexArrayVertexBuffer(attributes_, attribute, buffer,

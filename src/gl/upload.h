@@ -20,6 +20,9 @@ class FrameUpload {
     /// Binds what draw() reads.
     void bind() const;
 
+    /// Points, corners and depths as storage blocks from `first` on.
+    void bind_storage(GLuint first) const;
+
     /// Draws the triangles of one motion segment of a part.
     void draw(const Part& part, int segment) const;
 

@@ -24,12 +24,12 @@ bool has_own_samples(const MethodSettings& settings) {
            settings.visibility == VisibilityMethod::kInterleaved;
 }
 
-BenchRow counted_row(FrameWalk& walk, const std::string& method, Backend backend) {
+BenchRow counted_row(FrameWalk& walk, const std::string& method) {
     reset_peak_memory();
     const FrameWalk::Counts counts = walk.count(method, nullptr);
     BenchRow row;
     row.method = method;
-    if (backend == Backend::kGl) row.backend = "gl";
+    if (!counts.gl_pipeline.empty()) row.backend = "gl-" + counts.gl_pipeline;
     const MethodSettings settings = settings_of(method, {});
     row.conservative = settings.culling == "auto" || is_conservative(parse_culling(settings.culling));
     row.own_arithmetic = has_own_arithmetic(method);
@@ -90,7 +90,7 @@ Measurements measure_methods(const PosedPicture& picture, const MeasureOptions& 
     std::vector<BenchRow>& rows = result.rows;
     for (const std::string& method : options.methods) {
         FrameWalk& walk = walks.of(method);
-        rows.push_back(counted_row(walk, method, options.method.backend));
+        rows.push_back(counted_row(walk, method));
         // A frame and its questions make one round, and the counting run has told how long a frame takes.
         const double round_ms = std::max(1e-3, 2.0 * rows.back().frame_ms * walk.share());
         rows.back().runs = static_cast<int>(std::clamp(1000.0 * options.seconds / round_ms, 1.0, 1.0 * options.runs));

@@ -240,6 +240,7 @@ FrameWalk::Counts FrameWalk::count(const std::string& method, MethodMap* map) {
         adder.add(counts);
     });
     result.lost = all_lost;
+    result.gl_pipeline = visibility.gl_pipeline();
     result.frame_ms = bins_ms + tiles_ms;
     return result;
 }

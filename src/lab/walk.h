@@ -50,6 +50,7 @@ class FrameWalk {
         std::int64_t lost = 0;  ///< samples that differ from the reference: any bit of triangle or depth, or,
                                 ///< where the arithmetic is another, the triangle
         double frame_ms = 0.0;
+        std::string gl_pipeline;  ///< as Visibility's
     };
     /// `map`, of the whole picture, may be null.
     Counts count(const std::string& method, MethodMap* map);

@@ -169,8 +169,9 @@ double distance_to_segment(double ax, double ay, double bx, double by) {
 
 }  // namespace
 
-PlacedSample place_sample(const View& view, const SamplePoint& point, int px, int py, int index, int spp) {
-    PlacedSample sample{point, px, py, index, spp};
+PlacedSample place_sample(const View& view, const SamplePoint& point, int px, int py, int index,
+                          const OpacityPattern& pattern) {
+    PlacedSample sample{point, px, py, index, pattern};
     sample.gx = px + static_cast<double>(point.x) - 0.5 * view.width;
     sample.gy = 0.5 * view.height - (py + static_cast<double>(point.y));
     sample.u = point.u;
@@ -180,7 +181,7 @@ PlacedSample place_sample(const View& view, const SamplePoint& point, int px, in
 }
 
 PlacedSample place_sample(const View& view, const SampleTable& table, int px, int py, int index) {
-    return place_sample(view, table.sample(px, py, index), px, py, index, table.spp());
+    return place_sample(view, table.sample(px, py, index), px, py, index, table);
 }
 
 ExactHit cover_in_double(const Frame& frame, std::uint32_t triangle, const PlacedSample& sample) {
@@ -194,7 +195,7 @@ bool is_opaque(const Frame& frame, std::uint32_t triangle, const PlacedSample& s
     const CellCentre centre = cell_centre(frame.view, sample.px / kCellSize, sample.py / kCellSize);
     const LocalTriangle local = localize(frame, triangle, moment(part, sample.t).segment, centre);
     const SampleHit hit = project_sample(local, local_sample(sample.point, sample.px, sample.py));
-    return is_opaque_at(frame, triangle, hit.barycentrics, sample.px, sample.py, sample.index, sample.spp);
+    return is_opaque_at(frame, triangle, hit.barycentrics, sample.px, sample.py, sample.index, sample.pattern);
 }
 
 ExactHit nearest_in_double(const Frame& frame, const std::vector<std::uint32_t>& candidates,

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "cover/hits.h"
-#include "frame/frame.h"
+#include "frame/opacity.h"
 #include "sample/sample_table.h"
 
 namespace pentaprism {
@@ -18,11 +18,13 @@ namespace pentaprism {
 /// A sample with its place in the picture. (gx, gy): pixels from the middle of the picture, y up; exact.
 struct PlacedSample {
     SamplePoint point;
-    int px = 0, py = 0, index = 0, spp = 1;
+    int px = 0, py = 0, index = 0;
+    OpacityPattern pattern{1, 0};
     double gx = 0, gy = 0, u = 0, v = 0, t = 0;
 };
 PlacedSample place_sample(const View& view, const SampleTable& table, int px, int py, int index);
-PlacedSample place_sample(const View& view, const SamplePoint& point, int px, int py, int index, int spp);
+PlacedSample place_sample(const View& view, const SamplePoint& point, int px, int py, int index,
+                          const OpacityPattern& pattern);
 
 struct ExactHit {
     std::uint32_t triangle = kNoTriangle;

@@ -265,6 +265,7 @@ void FrameTiles::fill(RenderStats& stats) const {
     stats.tested = costs_.tested;
     stats.covered = costs_.covered;
     stats.shaded = costs_.shaded;
+    stats.gl_pipeline = visibility_->gl_pipeline();
 }
 
 }  // namespace pentaprism

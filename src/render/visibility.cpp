@@ -55,7 +55,7 @@ Visibility::Visibility(const Frame& frame, const SampleTable& samples, const Met
       blurs_(grouping_for(frame) != Grouping::kStill),
       culling_(method.culling == "auto" ? Culling() : parse_culling(method.culling)) {
     if (method.backend == Backend::kGl)
-        rasterizer_ = make_gl_rasterizer(frame, samples, method.culling, limits);
+        rasterizer_ = make_gl_rasterizer(frame, samples, method, limits);
     else if (method_ == VisibilityMethod::kRaytrace)
         tracer_ = make_tracer(frame, samples);
     else

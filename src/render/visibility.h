@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "bin/bins.h"
 #include "cover/cover.h"
@@ -42,6 +43,9 @@ class Visibility {
 
     /// 0 for a tracer and for a backend that bins on its own.
     std::int64_t binned_triangles() const { return bins_ ? static_cast<std::int64_t>(bins_->triangles().size()) : 0; }
+
+    /// geometry or compute; empty on the processor.
+    std::string gl_pipeline() const { return rasterizer_ ? rasterizer_->pipeline() : ""; }
 
   private:
     void cover_list(const TileWork& work, Hits& hits, CoverCounts& counts) const;

@@ -69,6 +69,7 @@ class SampleTable {
                 Sampler sampler = Sampler::kStratified);
 
     int spp() const { return spp_; }
+    std::uint32_t seed() const { return seed_; }
     int slots() const { return spp_; }  ///< vectors of a block
     Grouping grouping() const { return grouping_; }
     SamplePattern pattern() const { return pattern_; }

@@ -282,8 +282,7 @@ class EmbreeTracer::Impl {
         const float barycentrics[3] = {1.0f - u - v, u, v};
         const int lane = static_cast<int>(RTCRayN_id(arguments.ray, arguments.N, i));
         return is_opaque_at(context.self->frame_, triangle, barycentrics, context.bx * kBlockSize + lane % kBlockSize,
-                            context.by * kBlockSize + lane / kBlockSize, context.indices[lane],
-                            context.self->table_.spp());
+                            context.by * kBlockSize + lane / kBlockSize, context.indices[lane], context.self->table_);
     }
 
     /// The rule of the coverage stage, at its own barycentrics: a mask's edge is the same edge.
@@ -297,7 +296,7 @@ class EmbreeTracer::Impl {
         const SampleHit hit = project_sample(localize(frame_, triangle, segment, centre),
                                              {v.x[lane], v.y[lane], v.u[lane], v.v[lane], v.t[lane]});
         return is_opaque_at(frame_, triangle, hit.barycentrics, context.bx * kBlockSize + lane % kBlockSize,
-                            context.by * kBlockSize + lane / kBlockSize, context.indices[lane], table_.spp());
+                            context.by * kBlockSize + lane / kBlockSize, context.indices[lane], table_);
     }
 
     void release() {

@@ -24,7 +24,7 @@ for threads in 1 4; do
 done
 
 succeeds bench builtin:cubes --backend gl -r 32x32 -s 2 --effects both --methods none,hyperplane --runs 1 --json
-check "bench rows are gl's and lose nothing" json out 'all(r["backend"] == "gl" and r["false_culls"] == 0 and 0 < r["ste"] <= 1 for r in d["rows"])'
+check "bench rows are gl's and lose nothing" json out 'all(r["backend"] == "gl-compute" and r["false_culls"] == 0 and 0 < r["ste"] <= 1 for r in d["rows"])'
 
 refuses 2 "--culling half-space: not with --backend gl, which has auto, .*none" render builtin:cubes -o a.png --backend gl --culling half-space
 refuses 2 "--culling bbox@bucket: not with --backend gl" render builtin:cubes -o a.png --backend gl --culling bbox@bucket

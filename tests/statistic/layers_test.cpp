@@ -64,7 +64,7 @@ struct Differences {
     double z() const { return squared > 0 ? sum / std::sqrt(squared) : 0; }  // if their mean is 0
 };
 
-// Thresholds of opacity are drawn for each pixel and triangle, whatever the seed: pixels are what is independent.
+// Thresholds of opacity are drawn for each pixel and triangle: pixels are what is independent.
 TEST(ABuffer, IsTheMeanOfStochasticTransparency) {
     const Scene scene = crossing_panes();
     RenderSettings settings;

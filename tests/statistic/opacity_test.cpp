@@ -74,10 +74,23 @@ TEST(StochasticTransparency, EachPixelKeepsItsShareOfTheSamples) {
         for (int pixel = 0; pixel < 200; ++pixel) {
             int kept = 0;
             for (int index = 0; index < spp; ++index)
-                kept += is_opaque_at(frame, 0, middle, pixel, 3 * pixel, index, spp);
+                kept += is_opaque_at(frame, 0, middle, pixel, 3 * pixel, index, {spp, 0});
             EXPECT_NEAR(kept, 0.3 * spp, 1.0) << spp;
         }
     }
+}
+
+TEST(StochasticTransparency, PicturesOfOtherSeedsHaveOtherThresholds) {
+    // A mean over pictures of several seeds would else keep the pattern that all of them share.
+    const Scene scene = layers({0.5f});
+    const Frame frame = frame_of(scene, picture_of(32, 16));
+    const float middle[3] = {0.3f, 0.3f, 0.4f};
+    int same = 0, asked = 0;
+    for (std::uint32_t seed = 1; seed < 40; ++seed)
+        for (int px = 0; px < 500; ++px, ++asked)
+            same += is_opaque_at(frame, 0, middle, px, 3, 5, {16, seed}) ==
+                    is_opaque_at(frame, 0, middle, px, 3, 5, {16, seed - 1});
+    EXPECT_NEAR(same, 0.5 * asked, 4 * 0.5 * std::sqrt(asked));
 }
 
 TEST(StochasticTransparency, WhollyOpaqueAndWhollyClearSurfacesAreNotNoisy) {

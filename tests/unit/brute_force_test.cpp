@@ -81,7 +81,7 @@ TEST_P(CameraModel, SeesWhatARayThroughLensAndFocusPointMeets) {
             const SamplePoint point{std::floor(static_cast<float>(uniform(0, 256))) / 256.0f,
                                     std::floor(static_cast<float>(uniform(0, 256))) / 256.0f, static_cast<float>(u),
                                     static_cast<float>(v), static_cast<float>(uniform(0, 0.999))};
-            const PlacedSample sample = place_sample(view, point, px, py, 0, 1);
+            const PlacedSample sample = place_sample(view, point, px, py, 0, OpacityPattern{1, 0});
             const Ray ray = ray_of(view, sample);
             for (std::uint32_t triangle = 0; triangle < frame.triangle_count(); ++triangle) {
                 const dvec3 p[3] = {corner_at(frame, triangle, 0, sample.t), corner_at(frame, triangle, 1, sample.t),
@@ -148,7 +148,7 @@ TEST(BruteForce, NeverLeavesAGapOrADoubleHitOnTheEdgeOfTwoTriangles) {
     for (int i = -7 * 16; i <= 7 * 16; ++i) {
         const SamplePoint point{(i & 15) / 16.0f, (-i & 15) / 16.0f, 0, 0, 0};
         const int px = 16 + (i >> 4), py = 16 + (-i >> 4);
-        const PlacedSample sample = place_sample(frame.view, point, px, py, 0, 1);
+        const PlacedSample sample = place_sample(frame.view, point, px, py, 0, OpacityPattern{1, 0});
         ASSERT_EQ(sample.gx, sample.gy);
         EXPECT_NE(cover_in_double(frame, 0, sample).hit(), cover_in_double(frame, 1, sample).hit()) << i;
     }

@@ -84,7 +84,7 @@ inline void find_hits(const Frame& frame, const SampleTable& table, const Tile& 
                             cover_sample(local, local_sample(table.sample(x, y, index), x, y), centre);
                         const std::size_t at = hit_index(x, y, table.slot_of(x, y, index), table.slots());
                         if (!hit.hit || !(hit.depth < hits.depth[at])) continue;
-                        if (!is_opaque_at(frame, triangle, hit.barycentrics, x, y, index, table.spp())) continue;
+                        if (!is_opaque_at(frame, triangle, hit.barycentrics, x, y, index, table)) continue;
                         hits.depth[at] = hit.depth;
                         hits.triangle[at] = triangle;
                     }
