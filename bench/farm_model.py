@@ -1,10 +1,14 @@
 #!/usr/bin/env python3
 """How long a sequence takes on N machines: a model fed by measured frames (docs/use/farm.md).
 
-    for s in 16 4 1; do pentaprism render race.glb -o 'f.####.exr' -f 1-96x8 -s $s --stats race-$s.json; done
-    python3 bench/farm_model.py race=race-16.json,race-4.json,race-1.json --plot farm.svg
+    for run in 1 2 3; do for s in 16 4 1; do
+        pentaprism render race.glb -o 'f.####.exr' -f 1-89x8 -s $s --stats race-$s-$run.json
+    done; done
+    python3 bench/farm_model.py race=race-16-1.json,race-16-2.json,...,race-1-3.json --plot farm.svg
 
-The frames with the most samples are the job; those with fewer tell what a frame costs with a part of its samples.
+The frames with the most samples are the job; those with fewer tell what a frame costs with a part of its samples. Of a
+frame that was measured several times the fastest counts: whatever else the machine did can only have made it slower.
+Where it never was idle, measure with -t 1 and count processor time (--cpu).
 
 Each machine starts up, reads the scene and takes its share. Machines differ in speed: a lognormal spread, and a few that
 are much slower. They fail by chance (exponential), lose what is under way, as --resume does, and come back. All files
@@ -32,27 +36,33 @@ HOUR = 3600.0
 class Frame:
     """What one frame costs, in seconds of the machine that it was measured on."""
 
-    def __init__(self, stats):
+    def __init__(self, stats, cpu):
         times = stats["times_ms"]
-        self.total = times["total"] / 1000.0  # the picture is written meanwhile
-        self.setup = sum(times[stage] for stage in SETUP) / 1000.0
+        self.total = time_of(stats, cpu) / 1000.0  # the picture is written meanwhile
+        self.setup = self.total * sum(times[stage] for stage in SETUP) / times["total"]
         self.pixels = stats["width"] * stats["height"]
+
+
+def time_of(stats, cpu):
+    return stats["cpu_ms"] if cpu else stats["times_ms"]["total"]
 
 
 class Job:
     """The frames of a sequence, and the line time = fixed + slope * samples per pixel that its measurements lie on."""
 
-    def __init__(self, name, files):
-        by_spp = {}
+    def __init__(self, name, files, cpu=False):
+        fastest = {}  # by samples per pixel, then by frame
         for file in files:
             with open(file) as stream:
                 stats = json.load(stream)
-            stats = stats if isinstance(stats, list) else [stats]
-            by_spp.setdefault(stats[0]["spp"], []).extend(stats)
-        self.name, self.spp = name, max(by_spp)
-        self.measured = [Frame(s) for s in by_spp[self.spp]]
-        self.load = by_spp[self.spp][0]["times_ms"]["load"] / 1000.0
-        means = sorted((spp, mean(Frame(s).total for s in stats)) for spp, stats in by_spp.items())
+            for one in stats if isinstance(stats, list) else [stats]:
+                frames = fastest.setdefault(one["spp"], {})
+                frames[one["frame"]] = min(one, frames.get(one["frame"], one), key=lambda s: time_of(s, cpu))
+        self.name, self.spp = name, max(fastest)
+        job = fastest[self.spp]
+        self.measured = [Frame(job[number], cpu) for number in sorted(job)]
+        self.load = min(s["times_ms"]["load"] for s in job.values()) / 1000.0
+        means = sorted((spp, mean(Frame(s, cpu).total for s in frames.values())) for spp, frames in fastest.items())
         self.share_of_fixed = fixed_part(means) / means[-1][1] if len(means) > 1 else None
         self.mean = means[-1][1]
 
@@ -130,11 +140,11 @@ def one_queue(count):
 
 
 def by_mpi(job, frames, ranks, rng, options):
-    """Without single failures, then stretched by those of all: each costs all a frame's half and a new start."""
+    """Without single failures, then stretched by those of all: each costs everyone half a frame and a new start."""
     calm = argparse.Namespace(**{**vars(options), "mtbf": 0.0})
     left, end, again = by_frames(job, frames, ranks, rng, calm, dealt(ranks, len(frames))), 0.0, 0
     while (failure := time_to_failure(rng, options, ranks)) < left and again < 100000:
-        lost = min(failure, 0.5 * job.mean + options.start + job.load)
+        lost = min(failure, 0.5 * job.mean)
         end += failure + options.requeue + options.start + job.load
         left -= failure - lost
         again += 1
@@ -149,7 +159,7 @@ def together(job, frames, ranks, rng, options, seconds):
         part = seconds(frame) * slowest
         while (failure := time_to_failure(rng, options, ranks)) < part:
             end += failure + options.requeue + start_up
-        joined = frame.pixels * SHARD_BYTES * (ranks - 1) / ranks / (options.network * 1e6)
+        joined = frame.pixels * SHARD_BYTES / (options.join * 1e6) if ranks > 1 else 0.0
         end += part + joined + options.file_mb / options.disk + 5 * options.files / options.disk_ops + options.latency
     return end
 
@@ -172,7 +182,7 @@ def simulate(job, ranks, options):
     times = {split: [] for split in SPLITS if split != "samples" or job.share_of_fixed is not None}
     for split, ends in times.items():
         for run in range(options.runs):
-            rng = random.Random(f"{split} {run} {ranks}")
+            rng = random.Random(f"{run} {ranks}")  # the same machines for every split
             if split == "frames":
                 end = by_frames(job, frames, ranks, rng, options, dealt(ranks, len(frames)))
             elif split == "queue":
@@ -227,6 +237,7 @@ def plot(name, jobs, results, options):
 def parse(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("jobs", nargs="+", metavar="NAME=FILE[,FILE...]", help="what render --stats wrote for some frames")
+    parser.add_argument("--cpu", action="store_true", help="processor time instead of the time that passed: measured with -t 1")
     parser.add_argument("--frames", type=int, default=10000, help="in the sequence; the measured ones are spread over it")
     parser.add_argument("--ranks", default="1,10,100,1000", help="numbers of machines, with commas")
     parser.add_argument("--start", type=float, default=5.0, help="seconds until a process runs")
@@ -238,14 +249,14 @@ def parse(arguments=None):
     parser.add_argument("--disk", type=float, default=1000.0, help="MB a second of the shared file system")
     parser.add_argument("--disk-ops", type=float, default=5000.0, help="its opens, syncs and renames a second")
     parser.add_argument("--latency", type=float, default=0.02, help="seconds that a sync takes when nobody else asks")
-    parser.add_argument("--network", type=float, default=1000.0, help="MB a second into the process that joins")
+    parser.add_argument("--join", type=float, default=200.0, help="MB of parts a second that one process takes and adds")
     parser.add_argument("--scene-mb", type=float, default=3.0, help="that each process reads")
     parser.add_argument("--file-mb", type=float, default=4.0, help="of a frame's files")
     parser.add_argument("--files", type=int, default=1, help="of a frame; a data set has 18")
     parser.add_argument("--runs", type=int, default=5, help="simulations of which the median is taken")
     parser.add_argument("--plot", metavar="FILE.svg", help="a picture of it (needs matplotlib)")
     options = parser.parse_args(arguments)
-    for name, least in (("frames", 1), ("runs", 1), ("disk", 1e-9), ("disk_ops", 1e-9), ("network", 1e-9)):
+    for name, least in (("frames", 1), ("runs", 1), ("disk", 1e-9), ("disk_ops", 1e-9), ("join", 1e-9)):
         if getattr(options, name) < least:
             parser.error(f"--{name.replace('_', '-')} is too small")
     try:
@@ -262,7 +273,7 @@ def parse(arguments=None):
 def main():
     options = parse()
     try:
-        jobs = [Job(name, files.split(",")) for name, files in (job.split("=", 1) for job in options.jobs)]
+        jobs = [Job(name, files.split(","), options.cpu) for name, files in (job.split("=", 1) for job in options.jobs)]
     except (OSError, ValueError, KeyError, IndexError, TypeError) as error:
         sys.exit(f"farm_model.py: error: not what render --stats wrote: {error}")
     results = {}

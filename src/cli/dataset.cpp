@@ -10,6 +10,7 @@
 #include <pentaprism/aov.h>
 #include <pentaprism/error.h>
 #include <pentaprism/metadata.h>
+#include <set>
 
 #include "cli/frame_output.h"
 #include "cli/progress.h"
@@ -132,8 +133,9 @@ std::int64_t number_of(const fs::path& file) {
 
 class Dataset : public FrameOutput {
   public:
-    Dataset(const FrameSource& source, const fs::path& folder, const std::optional<Shard>& shard)
-        : source_(source), folder_(folder), shard_(shard) {
+    Dataset(const FrameSource& source, const fs::path& folder, const std::vector<std::int64_t>& frames,
+            const std::optional<Shard>& shard)
+        : source_(source), folder_(folder), all_(frames), shard_(shard) {
         source_.settings.image.aovs = kAovs;
         for (const char* kind : kFolders) {
             std::error_code error;
@@ -146,7 +148,8 @@ class Dataset : public FrameOutput {
 
     std::string name(std::int64_t frame) const override { return file("blur", frame, ".exr").string(); }
     bool exists(std::int64_t frame) const override { return fs::exists(file("frames", frame, ".json")); }
-    void check_resumable(std::span<const std::int64_t> frames) const override;
+    void check_resumable(std::span<const std::int64_t> frames) override;
+    void begin(std::span<const std::int64_t> frames) override;
     RenderStats render(Renderer& renderer, std::int64_t frame, const Progress& progress) override;
     void finish() override;
 
@@ -156,6 +159,7 @@ class Dataset : public FrameOutput {
     }
     void write_numbers(std::int64_t frame, const Collector& collector) const;
     void render_twins(Renderer& renderer, std::int64_t frame, const FrameInfo& blurred, const Progress& progress) const;
+    void check(const fs::path& frame) const { check_made_with(frame, source_.metadata(source_.at(number_of(frame)))); }
     Json hashes_of(std::int64_t frame) const;
     std::vector<fs::path> whole_frames() const;
     void write_summary(const std::vector<fs::path>& frames) const;
@@ -163,16 +167,34 @@ class Dataset : public FrameOutput {
 
     FrameSource source_;
     fs::path folder_;
+    std::vector<std::int64_t> all_;  // frames of all shards
     std::optional<Shard> shard_;
+    bool renders_ = false, resumes_ = false;
 };
 
-// All that the manifest will cover, whether they are asked for now or not.
-void Dataset::check_resumable(std::span<const std::int64_t>) const {
-    for (const fs::path& frame : whole_frames()) check_made_with(frame, source_.metadata(source_.at(number_of(frame))));
+// All that the manifest will cover, whether they are asked for now or not. Of many shards each reads its own frames
+// alone, and the first one those that nobody is asked for.
+void Dataset::check_resumable(std::span<const std::int64_t> frames) {
+    resumes_ = true;
+    for (const std::int64_t frame : frames) check(file("frames", frame, ".json"));
+    if (shard_ && shard_->index != 0) return;
+    const std::set<std::int64_t> asked(all_.begin(), all_.end());
+    for (const fs::path& frame : whole_frames())
+        if (!asked.contains(number_of(frame))) check(frame);
+}
+
+// While frames are made, what the folder says of all of them would be wrong.
+void Dataset::begin(std::span<const std::int64_t> frames) {
+    renders_ = !frames.empty();
+    std::error_code ignored;
+    for (const char* name : {"manifest.json", "camera.json"})
+        if (renders_) fs::remove(folder_ / name, ignored);
 }
 
 RenderStats Dataset::render(Renderer& renderer, std::int64_t frame, const Progress& progress) {
     const RenderSettings settings = source_.at(frame);
+    std::error_code ignored;
+    fs::remove(file("frames", frame, ".json"), ignored);  // no longer whole
     Collector collector({file("blur", frame, ".exr"), file("blur", frame, ".png")}, settings.image,
                         source_.metadata(settings));
     RenderStats stats;
@@ -255,12 +277,15 @@ std::vector<fs::path> Dataset::whole_frames() const {
     return frames;
 }
 
-// Shards that end at the same time may each miss the other's last frame. Who writes last has seen all: a frame's file
-// is there before its process comes here, and who missed it writes once more.
+// The last of many shards to end sees the frames of all, and reads them; the others leave at the first that is missing,
+// which is found soon from the end. A shard that had nothing to do leaves the summary as it is.
 void Dataset::finish() {
+    if (!std::all_of(all_.rbegin(), all_.rend(), [&](std::int64_t frame) { return exists(frame); })) return;
+    if (shard_ && !renders_ && fs::exists(folder_ / "manifest.json")) return;
     std::vector<fs::path> frames;
     do {
         frames = whole_frames();
+        if (resumes_ && shard_) std::for_each(frames.begin(), frames.end(), [&](const fs::path& f) { check(f); });
         write_summary(frames);
     } while (frames != whole_frames());
 }
@@ -310,8 +335,9 @@ void Dataset::write_shared(const char* name, const Json& json) const {
 }  // namespace
 
 std::unique_ptr<FrameOutput> make_dataset_output(const FrameSource& source, const fs::path& folder,
+                                                 const std::vector<std::int64_t>& frames,
                                                  const std::optional<Shard>& shard) {
-    return std::make_unique<Dataset>(source, folder, shard);
+    return std::make_unique<Dataset>(source, folder, frames, shard);
 }
 
 }  // namespace pentaprism::cli

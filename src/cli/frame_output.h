@@ -11,6 +11,7 @@
 #include <pentaprism/shard.h>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace pentaprism::cli {
 
@@ -32,7 +33,9 @@ class FrameOutput {
     /// All its files are there, whole.
     virtual bool exists(std::int64_t frame) const = 0;
     /// For --resume: throws Error(kUsage) for a file that is there and was made with other settings.
-    virtual void check_resumable(std::span<const std::int64_t> frames) const = 0;
+    virtual void check_resumable(std::span<const std::int64_t> frames) = 0;
+    /// Before the first of the frames that will be rendered.
+    virtual void begin(std::span<const std::int64_t>) {}
     virtual RenderStats render(Renderer& renderer, std::int64_t frame, const Progress& progress) = 0;
     /// After the last frame.
     virtual void finish() {}
@@ -43,9 +46,10 @@ class FrameOutput {
 std::unique_ptr<FrameOutput> make_picture_output(const FrameSource& source, const std::filesystem::path& out,
                                                  bool sharp);
 
-/// Makes the folders. Of a frame the file frames/NNNN.json is written last: what has it is whole. `shard`: others write
-/// into the folder at the same time.
+/// Makes the folders. Of a frame the file frames/NNNN.json is written last: what has it is whole. `frames`: all, those
+/// of other shards as well. `shard`: others write into the folder at the same time.
 std::unique_ptr<FrameOutput> make_dataset_output(const FrameSource& source, const std::filesystem::path& folder,
+                                                 const std::vector<std::int64_t>& frames,
                                                  const std::optional<Shard>& shard);
 
 /// Part of the frame `out`, as a file beside it.

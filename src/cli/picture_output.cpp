@@ -34,7 +34,7 @@ class PictureOutput : public FrameOutput {
         const fs::path file = frame_file(out_, frame);
         return fs::exists(file) && (!sharp_ || fs::exists(twin_of(file)));
     }
-    void check_resumable(std::span<const std::int64_t> frames) const override {
+    void check_resumable(std::span<const std::int64_t> frames) override {
         for (const std::int64_t frame : frames) {
             const fs::path file = frame_file(out_, frame);
             const RenderSettings settings = source_.at(frame);

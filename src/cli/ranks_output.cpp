@@ -43,7 +43,7 @@ class RanksOutput : public FrameOutput {
 
     std::string name(std::int64_t frame) const override { return frame_file(out_, frame).string(); }
     bool exists(std::int64_t frame) const override { return first_decides(fs::exists(frame_file(out_, frame))); }
-    void check_resumable(std::span<const std::int64_t> frames) const override {
+    void check_resumable(std::span<const std::int64_t> frames) override {
         if (!ranks_.first()) return;
         for (const std::int64_t frame : frames)
             check_made_with(frame_file(out_, frame), source_.metadata(source_.at(frame)));

@@ -14,6 +14,7 @@
 #include <pentaprism/randomize.h>
 #include <pentaprism/render.h>
 #include <pentaprism/shard.h>
+#include <sys/resource.h>
 
 #include "cli/commands.h"
 #include "cli/frame_output.h"
@@ -34,6 +35,16 @@ using Clock = std::chrono::steady_clock;
 
 double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// Of this process, all its threads.
+double processor_milliseconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto ms = [](const timeval& time) {
+        return 1e3 * static_cast<double>(time.tv_sec) + 1e-3 * static_cast<double>(time.tv_usec);
+    };
+    return ms(usage.ru_utime) + ms(usage.ru_stime);
 }
 
 struct RenderCommand {
@@ -105,7 +116,8 @@ void check_names(const RenderCommand& command) {
     check_numbered(command.samples, "--samples");
 }
 
-Json to_json(const RenderStats& stats, const RenderCommand& command, std::int64_t frame, const std::string& scene) {
+Json to_json(const RenderStats& stats, double cpu_ms, const RenderCommand& command, std::int64_t frame,
+             const std::string& scene) {
     Json json;
     json["scene"] = scene;
     json["frame"] = frame;
@@ -115,6 +127,7 @@ Json to_json(const RenderStats& stats, const RenderCommand& command, std::int64_
     json["height"] = command.settings.image.height;
     json["spp"] = command.settings.image.spp;
     json["times_ms"] = stats.times_ms;
+    json["cpu_ms"] = cpu_ms;
     json["triangles"] = stats.triangles;
     json["moving_triangles"] = stats.moving_triangles;
     json["samples"] = stats.samples;
@@ -138,8 +151,7 @@ std::string to_text(const Json& json) {
 
 // Leaves out the frames that need no work. All are looked at before the first is rendered: a directory of other
 // settings is refused at once, and the time left counts what is left.
-std::vector<std::int64_t> frames_to_do(const RenderCommand& command, const FrameOutput& output,
-                                       ProgressReporter& progress) {
+std::vector<std::int64_t> frames_to_do(const RenderCommand& command, FrameOutput& output, ProgressReporter& progress) {
     const std::vector<std::int64_t> all = command.my_frames();
     if (!command.leaves_existing()) return all;
     if (command.resume) output.check_resumable(all);
@@ -169,7 +181,7 @@ void share_with_ranks(RenderCommand& command) {
 }
 
 std::unique_ptr<FrameOutput> make_output(const RenderCommand& command, const FrameSource& source) {
-    if (!command.dataset.empty()) return make_dataset_output(source, command.dataset, command.shard);
+    if (!command.dataset.empty()) return make_dataset_output(source, command.dataset, command.frames, command.shard);
     if (!command.samples.empty()) return make_samples_output(source, command.samples);
     if (command.shards_a_frame())
         return command.ranks.alone() ? make_shard_output(source, command.out, *command.shard)
@@ -200,16 +212,20 @@ int render(RenderCommand& command) {
     Json all_stats = Json::array();
     ProgressReporter progress(command.verbosity, command.my_frames().size());
     Renderer renderer(scene);
-    for (const std::int64_t frame : frames_to_do(command, *output, progress)) {
+    const std::vector<std::int64_t> frames = frames_to_do(command, *output, progress);
+    output->begin(frames);
+    for (const std::int64_t frame : frames) {
         if (command.leaves_existing() && output->exists(frame)) {  // another process was faster
             progress.skip_frame(frame, output->name(frame));
             continue;
         }
         progress.begin_frame(frame);
+        const double cpu_start = processor_milliseconds();
         RenderStats stats = output->render(renderer, frame, progress.callback());
+        const double cpu_ms = processor_milliseconds() - cpu_start;
         stats.times_ms["load"] = load_ms;
         if (!command.stats.empty() && (command.ranks.first() || !command.shards_a_frame())) {
-            Json json = to_json(stats, command, frame, scene.name);
+            Json json = to_json(stats, cpu_ms, command, frame, scene.name);
             if (stats_for_each_frame) write_text_file(frame_file(command.stats, frame), to_text(json));
             all_stats.push_back(std::move(json));
         }

@@ -23,7 +23,7 @@ class StreamOutput : public FrameOutput {
 
     std::string name(std::int64_t frame) const override { return file(frame).string(); }
     bool exists(std::int64_t frame) const override { return fs::exists(file(frame)); }
-    void check_resumable(std::span<const std::int64_t> frames) const override {
+    void check_resumable(std::span<const std::int64_t> frames) override {
         for (const std::int64_t frame : frames) check_made_with(file(frame), source_.metadata(source_.at(frame)));
     }
     RenderStats render(Renderer& renderer, std::int64_t frame, const Progress& progress) override {

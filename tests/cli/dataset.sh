@@ -94,6 +94,37 @@ succeeds render builtin:cubes --dataset set -f 3-5 "${small[@]}" --skip-existing
 check "whole frames are left alone" test "$before" = "$(cksum set/blur/0003.exr)"
 check "missing ones are made" json set/manifest.json 'd["frames"] == 3'
 
+# Shards into one folder: each reads its own frames alone, and the last one to end sums up.
+part() { local i=$1; shift; run render builtin:cubes --dataset parts -f 1-6 "${small[@]}" --shard "$i/3" "$@"; }
+succeeds render builtin:cubes --dataset whole -f 1-6 "${small[@]}"
+part 1 --resume
+check "a shard that is not the last one sums nothing up" test "$status" = 0 -a ! -e parts/manifest.json -a ! -e parts/camera.json
+part 2 --resume
+mv parts/frames/0001.json kept.json
+echo '{}' >parts/frames/0001.json
+part 3 --resume
+check "it does not read another's frames before its own are done: $(cat err)" test -s parts/frames/0006.json
+check "the last one reads all, and refuses what is none: $status" test "$status" = 2 -a ! -e parts/manifest.json
+mv kept.json parts/frames/0001.json
+part 2 --resume
+check "whoever has nothing to do sums up what nobody has: $(cat err)" diff -r parts whole
+touch -d 2001-01-01 parts/manifest.json
+part 2 --resume
+check "and leaves it alone when it is there" test "$(stat -c %Y parts/manifest.json)" -lt 1000000000
+rm parts/frames/0004.json
+part 3 --resume
+check "nothing is summed up while a frame is missing" test "$(stat -c %Y parts/manifest.json)" -lt 1000000000
+part 1 --resume
+check "and then it is" test "$(stat -c %Y parts/manifest.json)" -gt 1000000000 -a "$(diff -r parts whole)" = ""
+succeeds render builtin:cubes --dataset parts --frame 9 "${small[@]}" --seed 1
+part 2 --resume
+check "a frame of others is the first shard's to read: $(cat err)" test "$status" = 0
+part 1 --resume
+check "which refuses it" grep -q 'parts/frames/0009.json: .*seed is 1 there and 0 now' err
+rm parts/frames/0002.json
+part 2 --resume
+check "nobody sums up frames of two settings" bash -c 'test "$1" = 2 -a ! -e parts/manifest.json && grep -q 0009.json err' - "$status"
+
 refuses 2 '--dataset' render builtin:cubes --dataset set -o a.png "${small[@]}"
 refuses 2 '--output' render builtin:cubes "${small[@]}"
 refuses 2 '--aov' render builtin:cubes --dataset set --aov coc "${small[@]}"

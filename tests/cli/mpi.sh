@@ -64,17 +64,18 @@ if [[ -c /dev/full ]]; then
     check "a full disk is 4, not $status" test "$status" = 4
     check "and is said" grep -q 'full.exr: cannot write (No space left on device)' err
 fi
-# A rank that dies.
-mpirun -n 2 --oversubscribe "$PENTAPRISM" render builtin:cubes -o dead.exr -r 4096x4096 -s 256 -t 1 >out 2>err </dev/null &
+# A rank that dies. All have joined when the first one tells how far it is.
+mpirun -n 2 --oversubscribe "$PENTAPRISM" render builtin:cubes -o dead.exr -r 4096x4096 -s 256 -t 1 --progress ndjson >out 2>err \
+    </dev/null &
 mpi=$!
-victim=
-for _ in $(seq 100); do
-    victim=$(pgrep -P "$mpi" -x pentaprism | tail -n 1)
-    [[ -n $victim ]] && break
+for _ in $(seq 600); do
+    grep -q '"event":"progress"' err && break
     sleep 0.1
 done
-sleep 1
-kill -9 "$victim"
+check "the ranks are at work: $(head -c 800 err)" grep -q '"event":"progress"' err
+victim=$(pgrep -f -P "$mpi" -- '-o dead.exr' | tail -n 1)
+check "there is a rank to kill" test -n "$victim"
+kill -9 "${victim:-$mpi}"
 status=0
 wait "$mpi" || status=$?
 check "a dead rank ends the work, with an exit code" test "$status" != 0

@@ -37,7 +37,7 @@ check "the default writes over" test "$(stat -c %Y shots/f.0001.png)" -gt 100000
 # Statistics.
 succeeds render builtin:cubes -o a.png "${small[@]}" --stats stats.json
 check "one frame: one object" json stats.json \
-    'all(k in d for k in "times_ms triangles samples tested covered ste shaded peak_mb threads isa".split())'
+    'all(k in d for k in "times_ms cpu_ms triangles samples tested covered ste shaded peak_mb threads isa".split())'
 check "samples are pixels times spp" json stats.json 'd["samples"] == 64 * 36 and d["triangles"] == 50'
 check "covered samples are among the tested" json stats.json '0 < d["covered"] <= d["tested"] and 0 < d["ste"] <= 1'
 succeeds render builtin:cubes -o 'f.#.png' -f 0-2 "${small[@]}" --stats all.json

@@ -53,7 +53,8 @@ refuses 2 'fstop is 2.0 there and not set now' "${list[@]}" -r 96x54 -s 8 --shar
 refuses 2 'aovs' "${list[@]}" "${small[@]}" --resume
 refuses 2 'scene is .*cubes.* now' render builtin:hand -o 'shots/f.##.exr' -f 20,1 "${small[@]}" --sharp --aov coc --resume
 check "nothing was rendered" test ! -e shots/f.20.exr
-refuses 2 'set/frames/0001.json.*seed is 0 there and 1 now' render builtin:cubes --dataset set -f 2-3 "${small[@]}" --seed 1 --resume
+refuses 2 'set/frames/0002.json.*seed is 0 there and 1 now' render builtin:cubes --dataset set -f 2-3 "${small[@]}" --seed 1 --resume
+refuses 2 'set/frames/0001.json.*seed is 0 there and 1 now' render builtin:cubes --dataset set -f 8-9 "${small[@]}" --seed 1 --resume
 succeeds render builtin:cubes -o a.png "${small[@]}"
 succeeds render builtin:cubes -o a.png "${small[@]}" --resume
 refuses 2 'a.png: .*seed' render builtin:cubes -o a.png "${small[@]}" --seed 2 --resume
