@@ -16,5 +16,6 @@ struct PosedPicture {
 
 /// As render_frame poses it. `scene` must outlive the picture.
 PosedPicture pose_picture(const Scene& scene, const RenderSettings& settings, double frame);
+PosedPicture pose_picture(const Scene&& scene, const RenderSettings& settings, double frame) = delete;  // would be gone
 
 }  // namespace pentaprism

@@ -190,7 +190,8 @@ TEST_F(GlBackend, SeesOrthographicPicturesAlike) {
 }
 
 TEST_F(GlBackend, RefusesByNameWhatItCannotDo) {
-    const PosedPicture picture = pose_picture(load_scene("builtin:cubes"), settings_of(32, 32, 1), 0);
+    const Scene scene = load_scene("builtin:cubes");
+    const PosedPicture picture = pose_picture(scene, settings_of(32, 32, 1), 0);
     const auto refusal = [&](const std::string& culling) {
         try {
             look(picture, By::kCompute, culling);
@@ -246,7 +247,8 @@ TEST_F(GlBackend, ShaderThatDoesNotCompileIsOneLine) {
 TEST_F(GlBackend, ContextThatIsLostIsOneLine) {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     const auto lose_it = [] {
-        const PosedPicture picture = pose_picture(load_scene("builtin:cubes"), settings_of(32, 32, 1), 0);
+        const Scene scene = load_scene("builtin:cubes");
+        const PosedPicture picture = pose_picture(scene, settings_of(32, 32, 1), 0);
         look(picture, By::kCompute, "none");
         {
             const gl::Device::Current current(gl::Device::get());
@@ -273,7 +275,8 @@ std::int64_t resident_kilobytes() {
 }
 
 TEST_F(GlBackend, LeavesNoErrorAndNoMemoryBehindAfterAHundredFrames) {
-    const PosedPicture picture = pose_picture(load_scene("builtin:cubes"), settings_of(64, 64, 2), 24);
+    const Scene scene = load_scene("builtin:cubes");
+    const PosedPicture picture = pose_picture(scene, settings_of(64, 64, 2), 24);
     std::int64_t after_warm_up = 0;
     for (int frame = 0; frame < 100; ++frame) {
         look(picture, frame % 2 == 0 ? By::kCompute : By::kGeometry, "none");

@@ -43,7 +43,8 @@ Scene stack_of_squares(int count, float half, int layers = 1) {
 
 TEST_F(GlBackend, LosesNothingWhereListsDoNotFitAtOnce) {
     const RenderSettings settings = settings_of(64, 64, 10);  // more passes than one, which use lists again
-    const PosedPicture picture = pose_picture(stack_of_squares(400, 0.4f, 3), settings, 0);
+    const Scene scene = stack_of_squares(400, 0.4f, 3);
+    const PosedPicture picture = pose_picture(scene, settings, 0);
     const Seen roomy = look(picture, By::kCompute, "none");
     // A block holds neither all triangles, 16 bytes each, nor, of those of a batch, the tiles that each is in, 4 bytes
     // each: several batches, and several ranges of tiles. In a tile each is tested 64 times a sample at most.
@@ -62,7 +63,8 @@ TEST_F(GlBackend, LosesNothingWhereListsDoNotFitAtOnce) {
 TEST_F(GlBackend, LosesNothingInLongLists) {
     expect_same(stack_of_squares(10000, 0.01f), settings_of(16, 16, 9), 0, "none");
     expect_same(stack_of_squares(300, 0.2f), settings_of(16, 16, 9), 0, "hull@tile+hull+clip-space");
-    const PosedPicture wide = pose_picture(stack_of_squares(1, 3.0f), settings_of(2400, 1800, 1), 0);
+    const Scene square = stack_of_squares(1, 3.0f);
+    const PosedPicture wide = pose_picture(square, settings_of(2400, 1800, 1), 0);
     const Seen cpu = look(wide, By::kCpu, "none"), gl = look(wide, By::kCompute, "none");
     EXPECT_EQ(gl.counts.covered, 2400 * 1800);
     EXPECT_EQ(cpu.triangle, gl.triangle);
@@ -70,7 +72,8 @@ TEST_F(GlBackend, LosesNothingInLongLists) {
 }
 
 TEST_F(GlBackend, TakesComputeWhereItFitsElseGeometry) {
-    const PosedPicture picture = pose_picture(load_scene("builtin:cubes"), settings_of(32, 32, 1), 0);
+    const Scene scene = load_scene("builtin:cubes");
+    const PosedPicture picture = pose_picture(scene, settings_of(32, 32, 1), 0);
     EXPECT_EQ(look(picture, By::kCpu, "none").pipeline, "");
     EXPECT_EQ(look(picture, By::kAuto, "none").pipeline, "compute");
     const SmallBlocks small(largest_array(picture.frame) - 1);
