@@ -2,17 +2,10 @@
 
 #include <algorithm>
 
+#include "sample/net.h"
+
 namespace pentaprism {
 namespace {
-
-// Wellons' low-bias mixer (hash-prospector), as in the sample pattern.
-std::uint32_t mix(std::uint32_t x) {
-    x ^= x >> 16;
-    x *= 0x7feb352du;
-    x ^= x >> 15;
-    x *= 0x846ca68bu;
-    return x ^ (x >> 16);
-}
 
 // A permutation of [0, n) chosen by `seed`: Kensler 2013, Correlated Multi-Jittered Sampling, section 4 (permute the
 // next power of two by steps that can be undone, again until the result lies in the range).

@@ -1,7 +1,5 @@
 #include "render/layer_shading.h"
 
-#include <algorithm>
-
 namespace pentaprism {
 
 std::int64_t LayerShader::shade(const Visibility& visibility, const ShadingScene& scene, const SampleTable& samples,
