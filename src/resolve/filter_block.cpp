@@ -101,10 +101,16 @@ void filter_samples(const BlockSamples& samples, BlockSums& out) {
         for (int row = 0; row < 3; ++row)
             for (int lane = 0; lane < kLanes; lane += kWidth) add(run, count, row, lane, total[row]);
     }
-    const double* from = &total[0][0][0][0];
+    const hn::CappedTag<double, 8> d;
+    const auto share = hn::Set(d, samples.share), most = hn::Set(d, kMost), unit = hn::Set(d, kUnit);
+    double* from = &total[0][0][0][0];
     std::int64_t* to = &out.fixed[0][0][0][0];
-    for (int i = 0; i < 9 * kSums * kLanes; ++i)
-        to[i] = std::llrint(std::clamp(from[i] * samples.share, -kMost, kMost) * kUnit);
+    constexpr int kCount = 9 * kSums * kLanes;
+    for (int i = 0; i < kCount; i += static_cast<int>(hn::Lanes(d))) {
+        const auto sum = hn::Mul(hn::Load(d, from + i), share);
+        hn::Store(hn::Mul(hn::Min(hn::Max(sum, hn::Neg(most)), most), unit), d, from + i);
+    }
+    for (int i = 0; i < kCount; ++i) to[i] = std::llrint(from[i]);
 }
 
 }  // namespace HWY_NAMESPACE
