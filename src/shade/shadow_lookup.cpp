@@ -306,7 +306,8 @@ class Lookup {
         return bits_of(f, hn::Or(hn::Not(wanted), is_lit(f, first, sample_x, sample_y, t, occluder)));
     }
 
-    // The plane of the triangle at the sample's time, seen where the sample is (as cover/exact.h does).
+    // The plane of the triangle at the sample's time, seen where the sample is (as cover/exact.h does), against how
+    // deep the nearest triangle there may be where the point is.
     HWY_INLINE Mask is_lit(F f, int first, Vec sample_x, Vec sample_y, Vec t, Vec occluder) const {
         Vec X[3], Y[3], z[3];
         Vec b[3];
@@ -348,8 +349,16 @@ class Lookup {
         const Vec own = sum(b[0], b[1], b[2]);
         Vec texel = hn::Set(f, 1.0f / scale_);
         if constexpr (kPerspective) texel = hn::Mul(texel, own);
-        Vec depth = hn::Div(sum(e0, e1, e2), hn::Add(hn::Add(e0, e1), e2));
-        depth = hn::IfThenElse(hn::IsFinite(depth), depth, own);
+        const auto mean = [&](Vec p, Vec q, Vec r) HWY_ATTR {
+            const Vec depth = hn::Div(sum(p, q, r), hn::Add(hn::Add(p, q), r));
+            return hn::IfThenElse(hn::IsFinite(depth), depth, own);
+        };
+        Vec depth = mean(e0, e1, e2);
+        // Where a surface folds towards the light, the next facet lies before the plane beyond this one's edge, so
+        // points do not recede further than that edge.
+        const Vec zero = hn::Zero(f), sign = hn::And(hn::Add(hn::Add(e0, e1), e2), hn::Set(f, -0.0f));
+        const auto inside = [&](Vec e) HWY_ATTR { return hn::Max(hn::Xor(e, sign), zero); };
+        depth = hn::Min(depth, mean(inside(e0), inside(e1), inside(e2)));
         depth = hn::Max(depth, hn::Sub(own, hn::Mul(hn::Set(f, kFarthestBefore), texel)));
         depth = hn::Min(depth, plus_product(own, hn::Set(f, kFarthestBehind), texel));
         return hn::Le(depth, plus_product(occluder, hn::Set(f, kBias), texel));

@@ -142,12 +142,12 @@ const float* ShadowMap::depths(int exponent, int limit, int cx, int cy) const {
 
 const float* ShadowMap::render(int exponent, int cx, int cy, const List& list) const {
     if (list.empty()) return kEmptyCell.data();
-    static thread_local AlignedVector<float> depths(ShadowSamples::kPerCell);
-    draw_({casters(), list, samples_, cx, cy, width_, std::ldexp(1.0f, -exponent)}, depths.data());
-    if (std::all_of(depths.begin(), depths.end(), [](float depth) { return depth == INFINITY; }))
+    static thread_local AlignedVector<float> depths(ShadowSamples::kPerCell), bounds(ShadowSamples::kPerCell);
+    draw_({casters(), list, samples_, cx, cy, width_, std::ldexp(1.0f, -exponent)}, depths.data(), bounds.data());
+    if (std::all_of(bounds.begin(), bounds.end(), [](float depth) { return depth == INFINITY; }))
         return kEmptyCell.data();
-    float* made = new float[depths.size()];
-    std::copy(depths.begin(), depths.end(), made);
+    float* made = new float[bounds.size()];
+    std::copy(bounds.begin(), bounds.end(), made);
     return made;
 }
 

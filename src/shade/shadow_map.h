@@ -44,8 +44,8 @@ class ShadowMap {
     /// least limit not below that depth; an orthographic view has none.
     int limit_of(float depth) const;
 
-    /// Depths of a cell's samples (ShadowSamples); infinite where nothing is hit before the limit, and perhaps
-    /// so beyond it. Thread-safe, and the same whoever asks first.
+    /// Depths beyond which a cell's samples are in shadow (DrawShadowCell); infinite where nothing is hit before the
+    /// limit, and perhaps so beyond it. Thread-safe, and the same whoever asks first.
     const float* depths(int exponent, int limit, int cx, int cy) const;
     const ShadowSamples::Cell& samples(int cx, int cy) const { return samples_.cell(cx, cy); }
 

@@ -22,6 +22,9 @@ namespace {
 
 constexpr int kSamples = ShadowSamples::kSamples;
 
+// Texels to each side, between a point and a sample that it asks, as a rule.
+constexpr float kReach = 0.5f;
+
 HWY_INLINE Vec product_difference(Vec a, Vec b, Vec c, Vec d) {
     return hn::Sub(hn::Mul(a, b), hn::Mul(c, d));
 }
@@ -31,9 +34,26 @@ struct Sheared {
     float x[3], y[3], z[3];
     float dx[3], dy[3], dz[3];
     float segments, segment, nearest;
+    float recedes;  // how much deeper its plane is within kReach
     std::uint32_t triangle;
     bool moves, mixed;  // mixed: its opacity is to be asked
 };
+
+// How much deeper the plane through these corners is kReach texels to each side, at mid-segment.
+float receding_of(const Sheared& T, bool perspective) {
+    float x[3], y[3], z[3];
+    for (int k = 0; k < 3; ++k) {
+        z[k] = T.moves ? T.z[k] + 0.5f * T.dz[k] : T.z[k];
+        const float w = perspective ? 1.0f / z[k] : 1.0f;
+        x[k] = (T.moves ? T.x[k] + 0.5f * T.dx[k] : T.x[k]) * w;
+        y[k] = (T.moves ? T.y[k] + 0.5f * T.dy[k] : T.y[k]) * w;
+    }
+    const float ax = x[1] - x[0], ay = y[1] - y[0], az = z[1] - z[0];
+    const float bx = x[2] - x[0], by = y[2] - y[0], bz = z[2] - z[0];
+    const float area = ax * by - bx * ay;
+    const float recedes = kReach * (std::abs(az * by - bz * ay) + std::abs(bz * ax - az * bx)) / std::abs(area);
+    return std::isfinite(recedes) ? recedes : 0.0f;  // seen edge-on
+}
 
 Sheared shear(const ShadowCellWork& work, const Casters::Box& box) {
     const Frame& frame = work.casters.frame;
@@ -63,6 +83,7 @@ Sheared shear(const ShadowCellWork& work, const Casters::Box& box) {
         place(at + part.vertex_count, T.dx[k], T.dy[k], T.dz[k]);
         T.dx[k] -= T.x[k], T.dy[k] -= T.y[k], T.dz[k] -= T.z[k];
     }
+    T.recedes = receding_of(T, perspective);
     return T;
 }
 
@@ -81,7 +102,7 @@ Mask opaque(const ShadowCellWork& work, std::uint32_t triangle, std::optional<Op
 
 template <bool kMoves, bool kPerspective>
 HWY_INLINE void test(const ShadowCellWork& work, const ShadowSamples::Cell& samples, const Sheared& T,
-                     std::optional<OpacityTerms>& terms, int first, float* depths) {
+                     std::optional<OpacityTerms>& terms, int first, float* depths, float* bounds) {
     const F f;
     const Vec stored = hn::Load(f, depths + first);
     if (hn::AllTrue(f, hn::Le(stored, hn::Set(f, T.nearest)))) return;
@@ -119,6 +140,9 @@ HWY_INLINE void test(const ShadowCellWork& work, const ShadowSamples::Cell& samp
     if (hn::AllFalse(f, hit)) return;
     if (T.mixed) hit = opaque(work, T.triangle, terms, first, e, sum, hit);
     hn::Store(hn::IfThenElse(hit, depth, stored), f, depths + first);
+    const Vec farthest = hn::Max(hn::Max(z[0], z[1]), z[2]);
+    const Vec bound = hn::Max(depth, hn::Min(hn::Add(depth, hn::Set(f, T.recedes)), farthest));
+    hn::Store(hn::IfThenElse(hit, bound, hn::Load(f, bounds + first)), f, bounds + first);
 }
 
 // Texels of the box in the cell, first and last.
@@ -140,20 +164,21 @@ Rect rect_of(const ShadowCellWork& work, const Casters::Box& box) {
 }
 
 template <bool kMoves, bool kPerspective>
-void draw_triangle(const ShadowCellWork& work, const Sheared& T, const Rect& rect, float* depths) {
+void draw_triangle(const ShadowCellWork& work, const Sheared& T, const Rect& rect, float* depths, float* bounds) {
     const ShadowSamples::Cell& samples = work.samples.cell(work.cx, work.cy);
     std::optional<OpacityTerms> terms;
     for (int row = rect.y0; row <= rect.y1; ++row) {
         const int begin = (row * kCellSize + rect.x0) * kSamples, end = (row * kCellSize + rect.x1 + 1) * kSamples;
         for (int first = begin / kWidth * kWidth; first < end; first += kWidth)
-            test<kMoves, kPerspective>(work, samples, T, terms, first, depths);
+            test<kMoves, kPerspective>(work, samples, T, terms, first, depths, bounds);
     }
 }
 
 }  // namespace
 
-void draw_cell(const ShadowCellWork& work, float* depths) {
+void draw_cell(const ShadowCellWork& work, float* depths, float* bounds) {
     std::fill_n(depths, ShadowSamples::kPerCell, INFINITY);
+    std::fill_n(bounds, ShadowSamples::kPerCell, INFINITY);
     const bool perspective = work.casters.frame.view.perspective;
     for (const std::uint32_t i : work.list) {
         const Casters::Box& box = work.casters.boxes[i];
@@ -161,11 +186,11 @@ void draw_cell(const ShadowCellWork& work, float* depths) {
         if (rect.empty()) continue;
         const Sheared T = shear(work, box);
         if (T.moves)
-            perspective ? draw_triangle<true, true>(work, T, rect, depths)
-                        : draw_triangle<true, false>(work, T, rect, depths);
+            perspective ? draw_triangle<true, true>(work, T, rect, depths, bounds)
+                        : draw_triangle<true, false>(work, T, rect, depths, bounds);
         else
-            perspective ? draw_triangle<false, true>(work, T, rect, depths)
-                        : draw_triangle<false, false>(work, T, rect, depths);
+            perspective ? draw_triangle<false, true>(work, T, rect, depths, bounds)
+                        : draw_triangle<false, false>(work, T, rect, depths, bounds);
     }
 }
 

@@ -45,9 +45,10 @@ struct ShadowCellWork {
     float scale;        ///< texels a unit of the casters' x and y; a power of two
 };
 
-/// Writes the depth of what is nearest at each of the cell's samples, infinity where nothing is. `depths`: kPerCell of
-/// them, on a cache line. The same bits on every CPU target.
-using DrawShadowCell = void (*)(const ShadowCellWork& work, float* depths);
+/// Writes the depth of what is nearest at each of the cell's samples, and the depth beyond which points that ask the
+/// sample lie in its shadow: where the triangle's own plane may be at such a point, beside the sample, but no deeper
+/// than the triangle. Infinity where nothing is. kPerCell of each, on a cache line. The same bits on every CPU target.
+using DrawShadowCell = void (*)(const ShadowCellWork& work, float* depths, float* bounds);
 DrawShadowCell draw_shadow_cell();
 
 }  // namespace pentaprism

@@ -1,5 +1,6 @@
 #include "shade/shadow_raster.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <gtest/gtest.h>
@@ -62,7 +63,7 @@ TEST(ShadowRaster, ACellHoldsWhatTheExactTestSeesOnEveryCpuTarget) {
     support::Random random(7);
     const ShadowSamples samples(3);
     const SampleTable table(ShadowSamples::kSamples, 3, Lens{}, Grouping::kMotion);
-    std::size_t hits_seen = 0, differ = 0;
+    std::size_t hits_seen = 0, differ = 0, wrong = 0;
     for (int round = 0; round < 10; ++round)
         for (const bool perspective : {true, false}) {
             const WorldMotion world = random_world(random);
@@ -75,13 +76,15 @@ TEST(ShadowRaster, ACellHoldsWhatTheExactTestSeesOnEveryCpuTarget) {
             for (int cell = 0; cell < 4; ++cell) {
                 const int cx = cell % 2, cy = cell / 2;
                 const ShadowCellWork work{casters, list, samples, cx, cy, kWidth, kScale};
-                AlignedVector<float> depths(ShadowSamples::kPerCell), others(ShadowSamples::kPerCell);
-                draw_shadow_cell()(work, depths.data());
+                AlignedVector<float> depths(ShadowSamples::kPerCell), bounds(ShadowSamples::kPerCell);
+                AlignedVector<float> others(ShadowSamples::kPerCell), other_bounds(ShadowSamples::kPerCell);
+                draw_shadow_cell()(work, depths.data(), bounds.data());
                 for (const char* isa : {"scalar", "avx2", "avx512"}) {
                     if (!support::has_isa(isa)) continue;
                     const support::UseIsa use(isa);
-                    draw_shadow_cell()(work, others.data());
+                    draw_shadow_cell()(work, others.data(), other_bounds.data());
                     EXPECT_EQ(std::memcmp(depths.data(), others.data(), sizeof(float) * depths.size()), 0) << isa;
+                    EXPECT_EQ(std::memcmp(bounds.data(), other_bounds.data(), sizeof(float) * bounds.size()), 0) << isa;
                 }
                 Hits hits;
                 const Tile tile{cx * kCellSize, cy * kCellSize, (cx + 1) * kCellSize, (cy + 1) * kCellSize};
@@ -91,12 +94,39 @@ TEST(ShadowRaster, ACellHoldsWhatTheExactTestSeesOnEveryCpuTarget) {
                     const float expected = hits.depth[small_scene::hit_index(
                         texel % kCellSize, texel / kCellSize, i % ShadowSamples::kSamples, ShadowSamples::kSamples)];
                     hits_seen += std::isfinite(expected);
+                    wrong += !(bounds[i] >= depths[i]) || std::isfinite(bounds[i]) != std::isfinite(depths[i]);
                     differ += !(depths[i] == expected || std::abs(depths[i] - expected) < 1e-4f * expected);
                 }
             }
         }
     EXPECT_GT(hits_seen, 100000u);
+    EXPECT_EQ(wrong, 0u);
     EXPECT_LT(differ, hits_seen / 10000);  // rounding at an edge decides
+}
+
+// A square whose depth grows by 3 from left to right, over 64 texels.
+TEST(ShadowRaster, BeyondASampleItsTriangleMayRecedeByHalfATexelButNotBeyondItsEnd) {
+    WorldMotion world;
+    Part part;
+    part.triangle_count = 2;
+    part.vertex_count = 4;
+    world.parts.push_back(part);
+    world.bounds.push_back({glm::vec3(-100.0f), glm::vec3(100.0f)});
+    world.points = {{-1, -1, 2}, {1, -1, 5}, {1, 1, 5}, {-1, 1, 2}};
+    world.corners = {0, 1, 2, 0, 2, 3};
+    world.part_of = {0, 0};
+    const Casters casters = make_casters(world, Frame{}, LightView{}, kWidth, false);
+    const ShadowSamples samples(3);
+    const std::vector<std::uint32_t> list = {0, 1};
+    AlignedVector<float> depths(ShadowSamples::kPerCell), bounds(ShadowSamples::kPerCell);
+    for (int cx = 0; cx < 2; ++cx) {
+        draw_shadow_cell()({casters, list, samples, cx, 0, kWidth, kScale}, depths.data(), bounds.data());
+        for (int i = 0; i < ShadowSamples::kPerCell; ++i) {
+            const float x = samples.cell(cx, 0).x[i] + kCellSize * (cx - 0.5f);
+            EXPECT_NEAR(depths[i], 3.5f + 3.0f / 64.0f * x, 1e-5f);
+            EXPECT_NEAR(bounds[i], std::min(depths[i] + 1.5f / 64.0f, 5.0f), 1e-5f);
+        }
+    }
 }
 
 }  // namespace

@@ -99,6 +99,34 @@ TEST(Shadows, AFloorDoesNotShadowItselfAtAnyHeightOfTheSun) {
     }
 }
 
+// A slope that falls towards +x and one that rises again from its foot at x = 0, both in light: no facet stands before
+// another, though each one's plane goes on behind the other.
+TEST(Shadows, AFoldThatLightGrazesIsNotDarkAlongItsFoot) {
+    for (const double turn : {0.0, 0.4})
+        for (const float rise : {-0.5f, 0.2f, 4.0f}) {
+            Stage stage;
+            Primitive fold = square(4.0f, 0.0f, kNone);
+            fold.positions = {{-4, 8, 4}, {0, 0, 4}, {0, 0, -4}, {-4, 8, -4}, {4, 4 * rise, 4}, {4, 4 * rise, -4}};
+            for (glm::vec3& p : fold.positions) p.y += 10.0f;
+            fold.normals.clear();
+            fold.texcoords[0].clear();
+            fold.indices = {0, 1, 3, 1, 2, 3, 1, 4, 2, 4, 5, 2};
+            add_mesh(stage.scene, {fold});
+            // Along the texels' axes, and turned off them.
+            stage.add_sun({-0.1f, -1.0f, static_cast<float>(turn)});
+            stage.finish();
+            double before = 0.0, beyond = 0.0;
+            for (int i = 0; i < 40; ++i) {
+                const float along = 0.1f + 0.011f * static_cast<float>(i), near = 0.0004f * static_cast<float>(i);
+                before += stage.lit(3, {along, 1.0f - along - near, near}, 0.02f, -1, 16) / 40.0;
+                beyond += stage.lit(4, {1.0f - along - near, near, along}, 0.02f, -1, 16) / 40.0;
+            }
+            // 0.9 to 0.97 with planes that do not end where their triangles do.
+            EXPECT_GT(before, 0.985) << turn << " " << rise;
+            EXPECT_GT(beyond, 0.985) << turn << " " << rise;
+        }
+}
+
 TEST(Shadows, AShadowBeginsWhereItsCasterStandsAndEndsWhereItShould) {
     Stage stage;
     Primitive wall = square(1.0f, 0.0f, kNone);  // x in [-1, 1], y in [0, 2], at z = 0
