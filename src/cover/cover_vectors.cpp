@@ -8,6 +8,7 @@
 //      slot) of these whose farthest depth so far is beyond the triangle form a work list (work_list-inl.h);
 //   3. a pass over the list keeps vectors with samples inside the edges' half-planes, without branching on it;
 //   4. a pass over those does the exact test, depth, opacity and writes (vector_test-inl.h).
+// Where a tile holds more triangles than pixels, sixteen that blur alike take step 2 together (cluster-inl.h).
 // This file is compiled once for each CPU target.
 
 #undef HWY_TARGET_INCLUDE
@@ -25,6 +26,7 @@
 
 #if HWY_TARGET != HWY_SCALAR  // which takes cover_with_test()
 #include "cover/blur_batch-inl.h"
+#include "cover/cluster-inl.h"
 #include "cover/half_planes-inl.h"
 #include "cover/lanes-inl.h"
 #include "cover/vector_test-inl.h"
@@ -92,13 +94,40 @@ void cover_triangle(TileState& state, const BlurBatch& batch, int k) {
     if (jobs != 0) choose_kind(batch, k)(state, local_triangle(batch, k, state.work.frame), &H, k, jobs);
 }
 
-void cover_batch(TileState& state, BlurBatch& batch, const CullTest& camera_plane_test) {
-    prepare(batch, state.work, state.centre);
+void cover_one_by_one(TileState& state, BlurBatch& batch, const CullTest& camera_plane_test) {
     for (int k = 0; k < batch.count; ++k) {
         if (batch.behind[k] != 0)
             cover_at_camera_plane(state, batch, k, camera_plane_test);
         else
             cover_triangle(state, batch, k);
+    }
+}
+
+void cover_batch(TileState& state, BlurBatch& batch, const CullTest& camera_plane_test) {
+    prepare(batch, state.work, state.centre);
+    cover_one_by_one(state, batch, camera_plane_test);
+    batch.count = 0;
+}
+
+void cover_cluster(TileState& state, ClusterList& list, BlurBatch& batch, const CullTest& camera_plane_test) {
+    prepare(batch, state.work, state.centre);
+    std::uint64_t blocks = 0;
+    bool alike = true;
+    for (int k = 0; k < batch.count; ++k) {
+        blocks |= blocks_of(*batch.binned[k], state.work.tile);
+        alike = alike && batch.behind[k] == 0 && batch.segments[k] == batch.segments[0] &&
+                batch.segment[k] == batch.segment[0];
+    }
+    if (alike) {
+        list_cluster(state, batch, blocks & state.tile_blocks, list);
+        for (int k = 0; k < batch.count; ++k) {
+            if (batch.nearest[k] > state.tile_farthest) continue;
+            const std::size_t jobs = jobs_of_triangle(state, list, k, batch.nearest[k]);
+            if (jobs != 0)
+                choose_kind(batch, k)(state, local_triangle(batch, k, state.work.frame), &batch.planes, k, jobs);
+        }
+    } else {
+        cover_one_by_one(state, batch, camera_plane_test);
     }
     batch.count = 0;
 }
@@ -115,18 +144,35 @@ void update_tile_farthest(TileState& state) {
 
 void cover_front_to_back(TileState& state) {
     const CullTest& camera_plane_test = *find_cull_test("improved-dual-space");
-    BlurBatch batch{};
-    const std::vector<std::uint32_t> order = front_to_back(state.work);
+    BlurBatch batch{}, cluster{};
+    ClusterList list;
+    const ClusteredOrder order = clustered_front_to_back(state.work);
+    const std::vector<std::uint32_t>& entries = order.entries;
+    if (!order.clusters.empty()) {
+        list.jobs.resize(state.jobs.size());
+        list.triangles.resize(state.jobs.size());
+        list.farthest.resize(state.jobs.size());
+    }
     const bool some_blocks = state.work.tile.blocks != ~std::uint64_t{0};
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        fetch_ahead(state.work, order, i);
-        const BinnedTriangle& binned = state.work.triangles[order[i]];
+    auto next_cluster = order.clusters.begin();
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        fetch_ahead(state.work, entries, i);
+        const BinnedTriangle& binned = state.work.triangles[entries[i]];
         const float nearest = nearest_depth(state.work, binned);
-        if (nearest > state.tile_farthest) break;  // so are all that follow
-        if (some_blocks && (blocks_of(binned, state.work.tile) & state.tile_blocks) == 0) continue;
-        append(batch, state.work.frame, binned, nearest);
-        if (batch.count < BlurBatch::kSize) continue;
-        cover_batch(state, batch, camera_plane_test);
+        const bool in_cluster = next_cluster != order.clusters.end() && i >= *next_cluster;
+        if (in_cluster) {
+            append(cluster, state.work.frame, binned, nearest);
+            if (cluster.count < BlurBatch::kSize) continue;
+            ++next_cluster;
+            if (*std::min_element(cluster.nearest, cluster.nearest + cluster.count) > state.tile_farthest) break;
+            cover_cluster(state, list, cluster, camera_plane_test);
+        } else {
+            if (nearest > state.tile_farthest) break;  // so are all that follow
+            if (some_blocks && (blocks_of(binned, state.work.tile) & state.tile_blocks) == 0) continue;
+            append(batch, state.work.frame, binned, nearest);
+            if (batch.count < BlurBatch::kSize) continue;
+            cover_batch(state, batch, camera_plane_test);
+        }
         update_tile_farthest(state);
     }
     if (batch.count != 0) cover_batch(state, batch, camera_plane_test);
@@ -143,6 +189,7 @@ void cover_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
     const std::span<const Domain> domains =
         work.samples.domains(work.tile.cell_x(), work.tile.cell_y(), domains_of_cell);
     state.stratum_count = static_cast<int>(domains.size());
+    state.strata = work.samples.strata(work.tile.cell_x(), work.tile.cell_y());
     for (int s = 0; s < kMaxStrata; ++s) {
         const Domain d = s < state.stratum_count ? domains[s] : Domain{0, 0, 0, 0, 2, -2};
         state.u[0][s] = d.u0, state.v[0][s] = d.v0, state.t[0][s] = d.t0;

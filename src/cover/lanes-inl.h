@@ -114,6 +114,7 @@ struct TileState {
     // Least [0] and greatest [1] coordinates of the strata, padded to whole vectors with empty ones.
     HWY_ALIGN float u[2][kMaxStrata], v[2][kMaxStrata], t[2][kMaxStrata];
     int stratum_count = 0;
+    std::span<const SampleTable::Stratum> strata;    // which vectors lie in them
     HWY_ALIGN std::uint64_t masks[kMaxStrata] = {};  // room: blocks of each stratum
     HWY_ALIGN float column_of_block[kBlocksPerCell], row_of_block[kBlocksPerCell];
 

@@ -1,10 +1,12 @@
 // The vector kernels of every CPU target, those for samples that share lens position and time, and the scalar path with
 // and without culling, give the same depths and triangles bit for bit.
+#include <algorithm>
 #include <cstring>
 #include <gtest/gtest.h>
 #include <map>
 #include <string>
 
+#include "cover/front_to_back.h"
 #include "render/visibility.h"
 #include "support/isa.h"
 #include "support/soup.h"
@@ -249,6 +251,64 @@ TEST_P(CoverTwins, AgreeForTrianglesThatRushAtTheCamera) {
         }
         expect_twins(frame, samples(spp(4)), 32, whole(s));
     }
+}
+
+// A mesh of triangles of about a pixel, all of which blur alike: what clusters are made of. The first ones of some
+// reach the camera plane.
+Frame make_mesh(Random& r, const Soup& soup) {
+    Soup none = soup;
+    none.triangles = 0;
+    none.classes = {Hard::kGeneric};
+    Frame frame = make_soup(r, none);
+    Part& part = frame.parts[0];
+    part.moves = soup.motion;
+    part.segments = part.moves ? r.between(1, 4) : 1;
+    const std::uint32_t side = 40;
+    part.vertex_count = (side + 1) * (side + 1);
+    part.triangle_count = 2 * side * side;
+    const float step = static_cast<float>(r.magnitude(0.2, 1.0)), reach = static_cast<float>(r.magnitude(0.5, 12.0));
+    const bool behind = r.chance(0.3);
+    for (int knot = 0; knot <= (part.moves ? part.segments : 0); ++knot) {
+        const auto at = [&] { return reach * static_cast<float>(r.unit() - 0.5); };
+        const float x = at(), y = at(), c = soup.defocus ? at() : 0.0f, w = 2.0f + static_cast<float>(r.unit());
+        for (std::uint32_t v = 0; v < part.vertex_count; ++v) {
+            const auto jitter = [&] { return 0.3f * step * static_cast<float>(r.unit()); };
+            const float vw = behind && v < 3 ? -1.0f : w + 0.1f * jitter();
+            const float vx = x + step * (static_cast<float>(v % (side + 1)) - side / 2.0f) + jitter(),
+                        vy = y + step * (static_cast<float>(v / (side + 1)) - side / 2.0f) + jitter();
+            frame.points.emplace_back(vx * vw, vy * vw, vw, c * vw);
+        }
+    }
+    for (std::uint32_t q = 0; q < side * side; ++q) {
+        const std::uint32_t v = q / side * (side + 1) + q % side;
+        for (const std::uint32_t corner : {v, v + 1, v + side + 1, v + side + 1, v + 1, v + side + 2})
+            frame.corners.push_back(corner);
+    }
+    frame.part_of.assign(part.triangle_count, 0);
+    return frame;
+}
+
+TEST_P(CoverTwins, AgreeForClusters) {
+    Random r(33);
+    std::size_t clustered = 0, walked = 0;
+    for (int i = 0; i < 4 * effort(); ++i) {
+        Soup s = soup();
+        s.width = s.height = 32;
+        s.ratio = i % 3 == 1 ? 1.7 : 1.0;
+        s.single_sided = i % 4 == 2;
+        if (i % 4 == 3) s.alpha = AlphaMode::kBlend;
+        const Frame frame = make_mesh(r, s);
+        const SampleTable& table = samples(spp(i % 2 == 0 ? 16 : 6), s.ratio);
+        expect_twins(frame, table, 32, whole(s));
+        const Bins bins(frame, 32, whole(s));
+        const auto listed = bins.tile(0, 0);
+        const ClusteredOrder order =
+            clustered_front_to_back({frame, table, bins.triangles(), listed, {0, 0, 32, 32}, nullptr});
+        clustered += kLanes * order.clusters.size();
+        walked += order.entries.size();
+        EXPECT_TRUE(std::is_permutation(listed.begin(), listed.end(), order.entries.begin(), order.entries.end()));
+    }
+    EXPECT_GT(4 * clustered, walked) << "many of these must be clusters, or nothing is tested here";
 }
 
 // A table is arranged for one kind of blur, but holds for every frame.
