@@ -110,7 +110,7 @@ class Contest {
                 EmbreeOptions options = best;
                 options.*what = choice;
                 const double sum = trial(options, tried);
-                if (sum >= least) continue;
+                if (sum >= kBetter * least) continue;
                 least = sum;
                 best = options;
             }
@@ -168,6 +168,7 @@ class Contest {
 
     // Odd, so that the tiles do not stand in columns.
     static constexpr std::size_t kTrialTiles = 11;
+    static constexpr double kBetter = 0.98;  // less is chance
 
     const PosedPicture& picture_;
     MethodSettings method_;

@@ -92,6 +92,7 @@ class EmbreeTracer::Impl {
           table_(table),
           scale_(axis_scale(frame.view)),
           for_speed_(options.for_speed),
+          quick_lines_(options.for_speed && frame.view.lens.tilt == glm::dvec2(0.0)),
           coherent_(options.coherent),
           rays_(options.rays) {
         const std::string configuration =
@@ -260,23 +261,41 @@ class EmbreeTracer::Impl {
               unsigned id) const {
         const float depth_near = static_cast<float>(frame_.view.depth_near),
                     depth_far = static_cast<float>(frame_.view.depth_far);
+        if (quick_lines_)
+            fill_quickly(packet.ray, count, centre, samples, first);
+        else
+            for (int k = 0; k < count; ++k) {
+                const Line line = line_of(centre, samples, first + k);
+                packet.ray.org_x[k] = line.origin_x;
+                packet.ray.org_y[k] = line.origin_y;
+                packet.ray.dir_x[k] = line.direction_x;
+                packet.ray.dir_y[k] = line.direction_y;
+            }
+        std::fill_n(packet.ray.org_z, count, 0.0f);
+        std::fill_n(packet.ray.dir_z, count, 1.0f);
+        std::fill_n(packet.ray.tnear, count, depth_near);
+        std::fill_n(packet.ray.tfar, count, depth_far);
+        std::copy_n(samples.t + first, count, packet.ray.time);
+        std::fill_n(packet.ray.mask, count, 0xffffffffu);
+        for (int k = 0; k < count; ++k) packet.ray.id[k] = id + static_cast<unsigned>(k);
+        std::fill_n(packet.ray.flags, count, 0u);
+        std::fill_n(packet.hit.geomID, count, RTC_INVALID_GEOMETRY_ID);
+        std::fill_n(packet.hit.instID[0], count, RTC_INVALID_GEOMETRY_ID);
+    }
+
+    /// line_of() in float, which the compiler makes vectors of: making rays must not count against Embree.
+    template <class Rays>
+    void fill_quickly(Rays& ray, int count, const CellCentre& centre, const SampleVector& samples, int first) const {
+        const float a = static_cast<float>(frame_.view.lens.a) * scale_,
+                    b = static_cast<float>(frame_.view.lens.b) * scale_;
+        const float to_origin = frame_.view.perspective ? 0.0f : scale_, to_direction = scale_ - to_origin;
         for (int k = 0; k < count; ++k) {
-            const int lane = first + k;
-            const Line line = line_of(centre, samples, lane);
-            packet.ray.org_x[k] = line.origin_x;
-            packet.ray.org_y[k] = line.origin_y;
-            packet.ray.org_z[k] = 0.0f;
-            packet.ray.dir_x[k] = line.direction_x;
-            packet.ray.dir_y[k] = line.direction_y;
-            packet.ray.dir_z[k] = 1.0f;
-            packet.ray.tnear[k] = depth_near;
-            packet.ray.tfar[k] = depth_far;
-            packet.ray.time[k] = samples.t[lane];
-            packet.ray.mask[k] = 0xffffffffu;
-            packet.ray.id[k] = id + static_cast<unsigned>(k);
-            packet.ray.flags[k] = 0;
-            packet.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
-            packet.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+            const float gx = centre.x + samples.x[first + k], gy = centre.y + samples.y[first + k];
+            const float u = samples.u[first + k], v = samples.v[first + k];
+            ray.org_x[k] = gx * to_origin - a * u;
+            ray.org_y[k] = gy * to_origin - a * v;
+            ray.dir_x[k] = gx * to_direction - b * u;
+            ray.dir_y[k] = gy * to_direction - b * v;
         }
     }
 
@@ -455,7 +474,7 @@ class EmbreeTracer::Impl {
     const Frame& frame_;
     const SampleTable& table_;
     float scale_;
-    bool for_speed_, coherent_;
+    bool for_speed_, quick_lines_, coherent_;
     EmbreeRays rays_;
     RTCDevice device_ = nullptr;
     RTCScene scene_ = nullptr;
