@@ -8,7 +8,8 @@ import math
 import sys
 
 WIDTH, HEIGHT, MARGIN = 330, 260, 50
-COLOURS = {"hand, defocus": "#0072b2", "car, motion": "#d55e00", "fairy-forest, both": "#009e73"}
+COLOURS = {"hand, defocus": "#0072b2", "car, motion": "#d55e00", "fairy-forest, both": "#009e73",
+           "fairy-forest, motion": "#cc79a7", "fairy-forest, defocus": "#777777"}
 
 
 def exponent(points):

@@ -159,22 +159,27 @@ def draw_spectra(frames, path):
             axis = axes[row][column]
             if (frame, step) not in frames:
                 continue
+            spectra = {}
             for s in SAMPLERS:
                 now = frames[frame, 0]
                 errors = now[s][1] - now["reference"][1]
                 if step:
                     following = frames[frame, 1]
                     errors = following[s][1] - following["reference"][1] - errors
-                axis.semilogy(*radial(power(errors)), color=COLOURS[s], label=s, linewidth=1.4)
+                spectra[s] = radial(power(errors))
+            free = spectra[FREE][1].mean()
+            for s, (at, values) in spectra.items():
+                axis.plot(at, values / free, color=COLOURS[s], label=s, linewidth=1.4)
+            axis.set_ylim(0.4, 3.2)
             for f in (0.25, 0.125):
                 axis.axvline(f, color="#cccccc", linewidth=0.8, zorder=0)
             axis.set_title(frame if step == 0 else "what changes to the next frame", fontsize=9)
             axis.tick_params(labelsize=8)
-    axes[0][0].legend(fontsize=7, loc="lower left")
+    axes[0][0].legend(fontsize=7, loc="center left")
     for axis in axes[1]:
         axis.set_xlabel("cycles per pixel", fontsize=8)
     for row in axes:
-        row[0].set_ylabel("power of the error", fontsize=8)
+        row[0].set_ylabel("power of the error over that of sobol", fontsize=8)
     figure.tight_layout()
     figure.savefig(path, metadata={"Date": None})
 
