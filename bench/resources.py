@@ -65,15 +65,17 @@ def threads(program, filters, repeats, folder):
 
 def memory(program, filters, counts, folder):
     failed = []
-    print("| frame | triangles | scene, MB | samples per pixel | in all, MB | beside the scene, MB |")
-    print("|---|---:|---:|---:|---:|---:|")
+    print("| frame | triangles | scene, MB | samples per pixel | in all, MB | beside the scene, MB | without shadow maps, MB |")
+    print("|---|---:|---:|---:|---:|---:|---:|")
     for name, words in frames(filters).items():
         # The scene alone: one pixel of it.
         scene = stats(program, [*words, "-r", "1280x720", "-s", "1", "--crop", "640,641,360,361", "-t", "1", "--shadows", "off"], folder)
         for spp in counts:
             told = stats(program, [*words, "-r", "1280x720", "-s", str(spp), "-t", "2"], folder)
+            unshadowed = stats(program, [*words, "-r", "1280x720", "-s", str(spp), "-t", "2", "--shadows", "off"], folder)
             beside = told["peak_mb"] - scene["peak_mb"]
-            print(f"| {name} | {told['triangles']} | {scene['peak_mb']:.0f} | {spp} | {told['peak_mb']:.0f} | {beside:.0f} |", flush=True)
+            without = unshadowed["peak_mb"] - scene["peak_mb"]
+            print(f"| {name} | {told['triangles']} | {scene['peak_mb']:.0f} | {spp} | {told['peak_mb']:.0f} | {beside:.0f} | {without:.0f} |", flush=True)
             if beside >= MOST_BESIDE_SCENE_MB:
                 failed.append(f"{name} at {spp} samples needs {beside:.0f} MB beside its scene")
             if told["triangles"] >= LARGE and told["peak_mb"] >= MOST_OF_LARGE_MB:
