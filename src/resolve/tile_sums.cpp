@@ -6,16 +6,15 @@
 #include <span>
 
 #include "resolve/filter.h"
+#include "resolve/filter_block.h"
 #include "resolve/sample_place.h"
-#include "shade/sample_order.h"
 
 namespace pentaprism {
 namespace {
 
-constexpr int kSums = 5;
+constexpr int kSums = BlockSums::kSums;
 constexpr float kBrightest = 0x1p20f;  // keeps 9 pixels' sums of 2^52 each far inside 64 bits
 constexpr double kUnit = 0x1p32;
-constexpr int kFloatRun = 32;  // samples added in float before they are added in double
 
 std::int64_t to_fixed(double x) {
     return std::llrint(std::clamp(x, -2.0 * kBrightest, 2.0 * kBrightest) * kUnit);
@@ -30,37 +29,33 @@ Float4 sample_of(const glm::vec3& color, float alpha) {
     return Float4{contained(color.x), contained(color.y), contained(color.z), alpha};
 }
 
-// For one pixel q: its samples' weighted sums for each of the up to 3x3 pixels p = q + (i - 1, j - 1) that they reach.
-struct FilteredPixel {
-    double total[3][3][kSums] = {};
-    Float4 colors[3][3] = {};  // red, green, blue, alpha
-    Float4 weights[3] = {};    // lane i
-
-    void add(Float4 value, Float4 across, Float4 down) {
-        for (int j = 0; j < 3; ++j) {
-            const Float4 row = across * splat(down[j]);
-            weights[j] += row;
-            for (int i = 0; i < 3; ++i) colors[j][i] += splat(row[i]) * value;
+// Adds a block's sums to those of the pixels it reaches.
+void add_block(const BlockSums& block, int bx, int by, TileSums& sums) {
+    const Tile& tile = sums.tile;
+    const int x0 = bx * kBlockSize, y0 = by * kBlockSize, reach = sums.reach;
+    const int columns = std::min(kBlockSize, tile.x1 - x0), rows = std::min(kBlockSize, tile.y1 - y0);
+    // Sums of whole numbers: in any order. Those of one kind lie side by side here.
+    std::int64_t around[kSums][kBlockSize + 2][kBlockSize + 4] = {};
+    for (int j = 1 - reach; j <= 1 + reach; ++j)
+        for (int i = 1 - reach; i <= 1 + reach; ++i)
+            for (int c = 0; c < kSums; ++c)
+                for (int row = 0; row < rows; ++row) {
+                    const std::int64_t* from = &block.fixed[j][i][c][row * kBlockSize];
+                    std::int64_t* to = &around[c][row + j][i];
+                    if (columns == kBlockSize)
+                        for (int column = 0; column < kBlockSize; ++column) to[column] += from[column];
+                    else
+                        for (int column = 0; column < columns; ++column) to[column] += from[column];
+                }
+    for (int row = 1 - reach; row < rows + 1 + reach; ++row)
+        for (int column = 1 - reach; column < columns + 1 + reach; ++column) {
+            PixelSums& to = sums.at(x0 + column - 1, y0 + row - 1);
+            for (int c = 0; c < kSums; ++c) to[c] += around[c][row][column];
         }
-    }
-    void flush() {
-        for (int j = 0; j < 3; ++j) {
-            for (int i = 0; i < 3; ++i) {
-                for (int c = 0; c < 4; ++c) total[j][i][c] += colors[j][i][c];
-                total[j][i][4] += weights[j][i];
-                colors[j][i] = splat(0.0f);
-            }
-            weights[j] = splat(0.0f);
-        }
-    }
-    void add_to(TileSums& sums, int x, int y, double share) const {
-        for (int j = -sums.reach; j <= sums.reach; ++j)
-            for (int i = -sums.reach; i <= sums.reach; ++i) {
-                PixelSums& to = sums.at(x + i, y + j);
-                for (int c = 0; c < kSums; ++c) to[c] += to_fixed(total[j + 1][i + 1][c] * share);
-            }
-    }
-};
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column)
+            sums.depth[sums.own(x0 + column, y0 + row)] = block.depth[row * kBlockSize + column];
+}
 
 }  // namespace
 
@@ -103,31 +98,16 @@ void TileFilter::add(const SampleTable& samples, const Hits& hits, const TileSha
     for (std::size_t i = 0; i < background; ++i) shown[i] = sample_of(glm::vec3(shade.colors[i]), shade.colors[i].w);
 
     const Tile& tile = sums.tile;
-    const double share = 1.0 / samples.spp();
-    SampleOrder order;
+    const FilterBlock filter = filter_block();
+    BlockSums block;
     for (int by = tile.y0 / kBlockSize; by * kBlockSize < tile.y1; ++by)
         for (int bx = tile.x0 / kBlockSize; bx * kBlockSize < tile.x1; ++bx) {
             if (!tile.wants(bx, by)) continue;
-            order.read(samples, bx, by);
-            const std::span<const SampleVector> vectors = samples.block(bx, by);
-            for (int lane = 0; lane < kLanes; ++lane) {
-                const int qx = bx * kBlockSize + lane % kBlockSize, qy = by * kBlockSize + lane / kBlockSize;
-                if (qx < tile.x0 || qx >= tile.x1 || qy < tile.y0 || qy >= tile.y1) continue;
-                FilteredPixel pixel;
-                float depth = std::numeric_limits<float>::infinity();
-                for (int index = 0; index < samples.spp(); ++index) {
-                    const int slot = order.slots(lane)[index];
-                    const std::size_t at = place_in_hits(bx, by, slot, lane, samples.slots());
-                    const std::uint32_t point = shade.point_of_sample[at];
-                    if (point != kBackground) depth = std::min(depth, hits.depth[at]);
-                    const auto [sx, sy] = place_in_pixel(vectors[slot], lane);
-                    pixel.add(shown[point == kBackground ? background : point], weights_[sx], weights_[sy]);
-                    if ((index + 1) % kFloatRun == 0) pixel.flush();
-                }
-                pixel.flush();
-                pixel.add_to(sums, qx, qy, share);
-                sums.depth[sums.own(qx, qy)] = depth;
-            }
+            const std::size_t first = place_in_hits(bx, by, 0, 0, samples.slots());
+            filter({samples.block(bx, by).data(), &shade.point_of_sample[first], &hits.depth[first], samples.slots(),
+                    shown.data(), static_cast<std::uint32_t>(background), weights_.data(), 1.0 / samples.spp()},
+                   block);
+            add_block(block, bx, by, sums);
         }
 }
 

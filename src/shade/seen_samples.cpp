@@ -80,9 +80,9 @@ void project(const SeenSamples::Batch& batch) {
     }
 }
 
-// floor(log2(side)) of a cell whose side is a quarter of this length, given squared; `least` to 6.
+// log2 of a cell's side, the power of two nearest to a quarter of this length, given squared; `least` to 6.
 HWY_INLINE IVec level(F f, Vec length2, int least) {
-    constexpr float kBlurShare2 = 0.25f * 0.25f;
+    constexpr float kBlurShare2 = 2.0f * 0.25f * 0.25f;  // so that rounding down is rounding to the nearest
     const I d;
     const Vec cells2 = hn::Mul(length2, hn::Set(f, kBlurShare2));
     const IVec exponent = hn::Sub(hn::ShiftRight<23>(hn::BitCast(d, cells2)), hn::Set(d, 127));

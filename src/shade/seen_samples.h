@@ -18,9 +18,9 @@ namespace pentaprism {
 
 /// A piece of a triangle that is shaded once: a rectangle on the screen as seen at mid-shutter through the middle of
 /// the lens, where motion and lens do not blur; larger where they do, as what is blurred holds no detail (after
-/// Vaidyanathan, Toth, Salvi, Boulos, Lefohn 2012; here for each material point, by powers of two). Sides are a quarter
-/// of the blur, along the motion and across it, and no less than a pixel: the grid of pixels itself where there is no
-/// blur.
+/// Vaidyanathan, Toth, Salvi, Boulos, Lefohn 2012; here for each material point). Sides are the power of two nearest to
+/// a quarter of the blur, along the motion and across it, and no less than a pixel: the grid of pixels itself where
+/// there is no blur.
 struct ShadingCell {
     glm::dvec2 centre{0.0};                           ///< pixels from the middle of the picture, y up
     glm::vec2 along{1.0f, 0.0f}, across{0.0f, 1.0f};  ///< sides, pixels

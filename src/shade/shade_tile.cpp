@@ -113,10 +113,6 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
     return shaded_;
 }
 
-int TileShader::quarter_of(std::size_t sample) const {
-    return by_quarters_ ? std::min(static_cast<int>(seen_.time(sample) * kQuarters), kQuarters - 1) : 0;
-}
-
 // The samples of one pixel share a point, or none do; those that see the back are another point.
 void TileShader::shade_pixels(const Run& run, const Tile& tile, TileShade& out) {
     const bool each = scene_->options().rate == ShadingRate::kSample;

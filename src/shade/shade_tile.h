@@ -3,6 +3,7 @@
 // triangle and pixel at the mean of the barycentrics of the samples that see it (McGuire, Enderton, Shirley, Luebke
 // 2010; here the mean instead of their last hit), or for each sample. Nothing hidden is ever shaded.
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -60,7 +61,10 @@ class TileShader {
     void shade_cells(const Run& run, TileShade& out);
     void light_quarters(const QuarterColors& colors, std::uint32_t seed, TileShade& out);
     void shade_background(const SampleVector* samples, const Tile& tile, TileShade& out);
-    int quarter_of(std::size_t sample) const;
+    int quarter_of(std::size_t sample) const {
+        const int quarter = static_cast<int>(seen_.time(sample) * QuarterColors::kQuarters);
+        return by_quarters_ ? std::min(quarter, QuarterColors::kQuarters - 1) : 0;
+    }
 
     const ShadingScene* scene_ = nullptr;
     bool by_quarters_ = false;  // colours change while the shutter is open

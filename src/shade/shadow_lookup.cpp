@@ -9,6 +9,7 @@
 #include <hwy/foreach_target.h>
 // foreach_target.h must come first.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <hwy/highway.h>
@@ -50,6 +51,11 @@ HWY_INLINE std::uint32_t bits_of(F f, Mask mask) {
     std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(f, mask, bytes);
     return bytes[0] | static_cast<std::uint32_t>(kWidth > 8 ? bytes[1] : 0) << 8;
+}
+
+// Of a small exponent; std::ldexp() is a call.
+HWY_INLINE float power_of_two(int exponent) {
+    return std::bit_cast<float>(static_cast<std::uint32_t>(exponent + 127) << 23);
 }
 
 // The point that has these barycentrics, of corners that are the same in all lanes.
@@ -169,8 +175,8 @@ class Lookup {
         }
         exponent_ = map.exponent_of(point_.texel / distance);
         const float edge = half_ - static_cast<float>(kCellSize);
-        while (exponent_ < ShadowMap::kCoarsest && !(reach < std::ldexp(edge, exponent_))) ++exponent_;
-        const float texel = std::ldexp(1.0f, exponent_);
+        while (exponent_ < ShadowMap::kCoarsest && !(reach < edge * power_of_two(exponent_))) ++exponent_;
+        const float texel = power_of_two(exponent_);
         scale_ = 1.0f / texel;
         if constexpr (kPerspective)
             limit_ = map.limit_of(depth * (1.0f + kFarthestBehind * texel));

@@ -1,0 +1,131 @@
+// Compiled once for each CPU target; the same operations in the same order, none of them fused.
+
+#include "resolve/filter_block.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "resolve/filter_block.cpp"
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4)
+#include <hwy/foreach_target.h>
+// foreach_target.h must come first.
+#include <algorithm>
+#include <cmath>
+#include <hwy/highway.h>
+#include <limits>
+
+#include "shade/tile_shade.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pentaprism {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using F = hn::CappedTag<float, kLanes>;
+using I = hn::RebindToSigned<F>;
+using U = hn::RebindToUnsigned<F>;
+using Vec = hn::Vec<F>;
+constexpr int kWidth = static_cast<int>(hn::MaxLanes(F()));
+constexpr int kFloatRun = 32;  // samples added in float before they are added in double
+constexpr int kSums = BlockSums::kSums;
+
+// What a run of samples is made of, lane by lane.
+struct Run {
+    alignas(64) float value[kFloatRun][4][kLanes], across[kFloatRun][3][kLanes], down[kFloatRun][3][kLanes];
+};
+
+HWY_INLINE void gather(F f, const Float4* table, hn::Vec<I> entry, int count, float (*out)[kLanes], int lane) {
+    const I d;
+    const hn::Vec<I> at = hn::ShiftLeft<2>(entry);
+    for (int k = 0; k < count; ++k)
+        hn::Store(hn::GatherIndex(f, reinterpret_cast<const float*>(table) + k, hn::BitCast(d, at)), f, out[k] + lane);
+}
+
+void read(const BlockSamples& samples, int first, int count, Run& run, BlockSums& out) {
+    const F f;
+    const I d;
+    const U u;
+    const auto offset = [&](Vec x) HWY_ATTR {  // place_in_pixel()
+        return hn::And(hn::ConvertTo(d, hn::Mul(x, hn::Set(f, 256.0f))), hn::Set(d, 255));
+    };
+    for (int i = 0; i < count; ++i)
+        for (int lane = 0; lane < kLanes; lane += kWidth) {
+            const int slot = first + i;
+            const auto point = hn::LoadU(u, samples.points + slot * kLanes + lane);
+            // Lanes outside the tile hold anything.
+            const auto entry = hn::BitCast(d, hn::Min(point, hn::Set(u, samples.background)));
+            gather(f, samples.shown, entry, 4, run.value[i], lane);
+            gather(f, samples.weights, offset(hn::Load(f, samples.vectors[slot].x + lane)), 3, run.across[i], lane);
+            gather(f, samples.weights, offset(hn::Neg(hn::Load(f, samples.vectors[slot].y + lane))), 3, run.down[i],
+                   lane);
+            const Vec depth = hn::LoadU(f, samples.depths + slot * kLanes + lane);
+            const auto hit = hn::RebindMask(f, hn::Ne(point, hn::Set(u, kBackground)));
+            const Vec closest = hn::Load(f, out.depth + lane);
+            hn::Store(hn::IfThenElse(hn::And(hit, hn::Lt(depth, closest)), depth, closest), f, out.depth + lane);
+        }
+}
+
+// The run's sums for the row of pixels `row`, added to the totals.
+void add(const Run& run, int count, int row, int lane, double (*total)[kSums][kLanes]) {
+    const F f;
+    Vec sums[3][kSums];
+    for (auto& of_column : sums)
+        for (Vec& sum : of_column) sum = hn::Zero(f);
+    for (int i = 0; i < count; ++i) {
+        const Vec down = hn::Load(f, run.down[i][row] + lane);
+        Vec value[4];
+        for (int c = 0; c < 4; ++c) value[c] = hn::Load(f, run.value[i][c] + lane);
+        for (int column = 0; column < 3; ++column) {
+            const Vec weight = hn::Mul(hn::Load(f, run.across[i][column] + lane), down);
+            for (int c = 0; c < 4; ++c) sums[column][c] = hn::Add(sums[column][c], hn::Mul(weight, value[c]));
+            sums[column][4] = hn::Add(sums[column][4], weight);
+        }
+    }
+    HWY_ALIGN float here[kWidth];
+    for (int column = 0; column < 3; ++column)
+        for (int c = 0; c < kSums; ++c) {
+            hn::Store(sums[column][c], f, here);
+            for (int k = 0; k < kWidth; ++k) total[column][c][lane + k] += static_cast<double>(here[k]);
+        }
+}
+
+}  // namespace
+
+void filter_samples(const BlockSamples& samples, BlockSums& out) {
+    constexpr double kMost = 0x1p21, kUnit = 0x1p32;  // tile_sums.cpp
+    Run run;
+    alignas(64) double total[3][3][kSums][kLanes] = {};
+    std::fill_n(out.depth, kLanes, std::numeric_limits<float>::infinity());
+    for (int first = 0; first < samples.slots; first += kFloatRun) {
+        const int count = std::min(kFloatRun, samples.slots - first);
+        read(samples, first, count, run, out);
+        for (int row = 0; row < 3; ++row)
+            for (int lane = 0; lane < kLanes; lane += kWidth) add(run, count, row, lane, total[row]);
+    }
+    const hn::CappedTag<double, 8> d;
+    const auto share = hn::Set(d, samples.share), most = hn::Set(d, kMost), unit = hn::Set(d, kUnit);
+    double* from = &total[0][0][0][0];
+    std::int64_t* to = &out.fixed[0][0][0][0];
+    constexpr int kCount = 9 * kSums * kLanes;
+    for (int i = 0; i < kCount; i += static_cast<int>(hn::Lanes(d))) {
+        const auto sum = hn::Mul(hn::Load(d, from + i), share);
+        hn::Store(hn::Mul(hn::Min(hn::Max(sum, hn::Neg(most)), most), unit), d, from + i);
+    }
+    for (int i = 0; i < kCount; ++i) to[i] = std::llrint(from[i]);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace pentaprism
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include "base/cpu_dispatch.h"
+
+namespace pentaprism {
+
+FilterBlock filter_block() {
+    PENTAPRISM_RETURN_FOR_CPU(filter_samples);
+    return HWY_STATIC_DISPATCH(filter_samples);
+}
+
+}  // namespace pentaprism
+#endif
