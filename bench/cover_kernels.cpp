@@ -195,8 +195,9 @@ HWY_AFTER_NAMESPACE();
 namespace pentaprism {
 namespace {
 
-std::unique_ptr<bench::CoverKernels> record_for_cpu(const Frame& frame, const SampleTable& samples, const Bins& bins,
-                                                    int stride) {
+std::unique_ptr<bench::CoverKernels> record_for_cpu([[maybe_unused]] const Frame& frame,
+                                                    [[maybe_unused]] const SampleTable& samples,
+                                                    [[maybe_unused]] const Bins& bins, [[maybe_unused]] int stride) {
     PENTAPRISM_RETURN_FOR_CPU(record(frame, samples, bins, stride));
     return nullptr;
 }
