@@ -14,6 +14,7 @@ import math
 import pathlib
 import resource
 import subprocess
+import sys
 import tempfile
 
 FRAME = "builtin:fairy-forest -r 1280x720 --frame 24 --fstop 2 --shutter 1".split()
@@ -109,17 +110,19 @@ def draw(rows, path):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
-    parser.add_argument("frame", nargs="*", help="scene and options instead of the usual frame")
     parser.add_argument("-o", "--output", type=pathlib.Path)
     parser.add_argument("--json", type=pathlib.Path, help="write (or, if it is there, read) what was measured")
     parser.add_argument("--samples", type=int, nargs="+", default=[4, 8, 16, 32, 64])
     parser.add_argument("--reference", type=int, default=1024)
     parser.add_argument("--repeats", type=int, default=1, help="the least time counts")
-    arguments = parser.parse_args()
+    # argparse takes what follows `--` only where no option stands before it.
+    words = sys.argv[1:]
+    own, frame = (words[: words.index("--")], words[words.index("--") + 1 :]) if "--" in words else (words, FRAME)
+    arguments = parser.parse_args(own)
     if arguments.json and arguments.json.exists():
         rows = json.loads(arguments.json.read_text())
     else:
-        rows = measure(arguments.program, arguments.frame or FRAME, arguments.samples, arguments.reference, arguments.repeats)
+        rows = measure(arguments.program, frame, arguments.samples, arguments.reference, arguments.repeats)
         if arguments.json:
             arguments.json.write_text("[\n" + ",\n".join(json.dumps(r) for r in rows) + "\n]\n")
     print_equal_error(rows)
