@@ -5,7 +5,8 @@
 
 Frame: fairy-forest with both blurs, 1280x720, one thread; other words for `pentaprism render` may be given after `--`. Error: root
 mean square of sRGB-encoded values (`pentaprism compare`) against --reference samples per pixel of another seed. Time: that of the whole
-program, user and system.
+program, user and system, and of it visibility alone. Last comes what each method takes for the error of `stochastic` at 16 samples per pixel
+(powers between the measured counts).
 """
 import argparse
 import json
@@ -13,6 +14,7 @@ import math
 import pathlib
 import resource
 import subprocess
+import sys
 import tempfile
 
 FRAME = "builtin:fairy-forest -r 1280x720 --frame 24 --fstop 2 --shutter 1".split()
@@ -32,17 +34,44 @@ def processor_seconds(command):
 
 def measure(program, frame, counts, reference_spp, repeats):
     folder = pathlib.Path(tempfile.mkdtemp())
-    reference, picture = folder / "reference.exr", folder / "picture.exr"
+    reference, picture, stats = folder / "reference.exr", folder / "picture.exr", folder / "stats.json"
     subprocess.run([program, "render", *frame, "-o", reference, "-q", "-s", str(reference_spp), "--seed", "77"], check=True)
     rows = []
     for spp in counts:
         for method in METHODS:
             command = [program, "render", *frame, "-o", picture, "--overwrite", "-q", "-t", "1", "-s", str(spp), "--visibility", method]
-            seconds = min(processor_seconds(command) for _ in range(repeats))
+            seconds, visibility = float("inf"), float("inf")
+            for _ in range(repeats):
+                seconds = min(seconds, processor_seconds([*command, "--stats", stats]))
+                visibility = min(visibility, json.loads(stats.read_text())["times_ms"]["visibility"])
             told = subprocess.run([program, "compare", "--json", picture, reference], check=True, capture_output=True, text=True)
-            rows.append({"method": method, "spp": spp, "seconds": seconds, "rmse": json.loads(told.stdout)["rmse"]})
-            print(f"| {method} | {spp} | {seconds:.2f} | {rows[-1]['rmse']:.5f} |", flush=True)
+            rows.append({"method": method, "spp": spp, "seconds": seconds, "visibility_ms": visibility,
+                         "rmse": json.loads(told.stdout)["rmse"]})
+            print(f"| {method} | {spp} | {seconds:.2f} | {visibility:.0f} | {rows[-1]['rmse']:.5f} |", flush=True)
     return rows
+
+
+def at_error(rows, method, error, what):
+    """Of `what` where the method's error is that: powers between two counts; beyond the last one as from the last two."""
+    own = sorted((r for r in rows if r["method"] == method and what in r), key=lambda r: r["spp"])
+    if len(own) < 2:
+        return None
+    for first, second in zip(own, own[1:]):
+        if second["rmse"] <= error:
+            break
+    share = math.log(error / first["rmse"]) / math.log(second["rmse"] / first["rmse"])
+    return math.exp(math.log(first[what]) + share * math.log(second[what] / first[what]))
+
+
+def print_equal_error(rows, spp=16):
+    error = next((r["rmse"] for r in rows if r["method"] == "stochastic" and r["spp"] == spp), None)
+    if error is None:
+        return
+    print(f"\n| method, for an error of {error:.5f} | samples per pixel | s | visibility, ms |\n|---|---:|---:|---:|")
+    for method in METHODS:
+        spp_then, seconds, visibility = (at_error(rows, method, error, k) for k in ("spp", "seconds", "visibility_ms"))
+        if seconds is not None:
+            print(f"| {method} | {spp_then:.1f} | {seconds:.2f} | {f'{visibility:.0f}' if visibility else ''} |")
 
 
 def ticks(low, high):
@@ -81,19 +110,22 @@ def draw(rows, path):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
-    parser.add_argument("frame", nargs="*", help="scene and options instead of the usual frame")
     parser.add_argument("-o", "--output", type=pathlib.Path)
     parser.add_argument("--json", type=pathlib.Path, help="write (or, if it is there, read) what was measured")
     parser.add_argument("--samples", type=int, nargs="+", default=[4, 8, 16, 32, 64])
     parser.add_argument("--reference", type=int, default=1024)
     parser.add_argument("--repeats", type=int, default=1, help="the least time counts")
-    arguments = parser.parse_args()
+    # argparse takes what follows `--` only where no option stands before it.
+    words = sys.argv[1:]
+    own, frame = (words[: words.index("--")], words[words.index("--") + 1 :]) if "--" in words else (words, FRAME)
+    arguments = parser.parse_args(own)
     if arguments.json and arguments.json.exists():
         rows = json.loads(arguments.json.read_text())
     else:
-        rows = measure(arguments.program, arguments.frame or FRAME, arguments.samples, arguments.reference, arguments.repeats)
+        rows = measure(arguments.program, frame, arguments.samples, arguments.reference, arguments.repeats)
         if arguments.json:
             arguments.json.write_text("[\n" + ",\n".join(json.dumps(r) for r in rows) + "\n]\n")
+    print_equal_error(rows)
     if arguments.output:
         draw(rows, arguments.output)
 

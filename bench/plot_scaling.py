@@ -8,7 +8,8 @@ import math
 import sys
 
 WIDTH, HEIGHT, MARGIN = 330, 260, 50
-COLOURS = {"hand, defocus": "#0072b2", "car, motion": "#d55e00", "fairy-forest, both": "#009e73"}
+COLOURS = {"hand, defocus": "#0072b2", "car, motion": "#d55e00", "fairy-forest, both": "#009e73",
+           "fairy-forest, motion": "#cc79a7", "fairy-forest, defocus": "#777777"}
 
 
 def exponent(points):
@@ -31,7 +32,7 @@ def ticks(low, high):
 def panel(quantity, curves, left):
     points = [p for c in curves for p in c["points"] if p[0] > 0]
     x0, x1 = (f(p[0] for p in points) for f in (min, max))
-    y0, y1 = min(p[1] for p in points) / 1.3, max(p[1] for p in points) * 1.3
+    y0, y1 = min(p[1] for p in points) / 1.3, max(p[1] for p in points) * 1.5 ** (1 + len(curves))  # room for the names
     place_x = lambda x: left + MARGIN + (WIDTH - MARGIN - 15) * math.log(x / x0) / math.log(x1 / x0)
     place_y = lambda y: 30 + (HEIGHT - 75) * (1 - math.log(y / y0) / math.log(y1 / y0))
     out = [f'<text x="{left + MARGIN}" y="18" font-weight="bold">ms by {quantity}</text>']

@@ -7,7 +7,7 @@
 #include <ctime>
 #include <fmt/format.h>
 #include <limits>
-#include <map>
+#include <unordered_map>
 
 #include "base/parallel.h"
 #include "cases.h"
@@ -27,12 +27,12 @@ Frame subdivided(const Frame& frame) {
     for (std::size_t p = 0; p < frame.parts.size(); ++p) {
         const Part& from = frame.parts[p];
         Part& to = finer.parts[p];
-        std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;  // of edges: vertex
+        std::unordered_map<std::uint64_t, std::uint32_t> middles;  // of edges: vertex
         std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
         const auto middle = [&](std::uint32_t a, std::uint32_t b) {
             const auto edge = std::minmax(a, b);
-            const auto [found, is_new] =
-                middles.emplace(edge, from.vertex_count + static_cast<std::uint32_t>(edges.size()));
+            const auto [found, is_new] = middles.emplace(std::uint64_t{edge.first} << 32 | edge.second,
+                                                         from.vertex_count + static_cast<std::uint32_t>(edges.size()));
             if (is_new) edges.emplace_back(edge);
             return found->second;
         };
@@ -99,14 +99,14 @@ class Curves {
     }
 
     void size(const Case& which) {
-        vary("pixels", which, {480, 768, 1536, 2160}, [](RenderSettings& settings, double height) {
+        vary("pixels", which, {480, 768, 1536, 2160, 2880}, [](RenderSettings& settings, double height) {
             settings.image.height = static_cast<int>(height);
             settings.image.width = static_cast<int>(height) * 4 / 3;
             return height * height * 4 / 3;
         });
     }
 
-    // Lens radius and open time of the shutter times a factor.
+    // Lens radius and open time of the shutter times a factor, as far as the case has them.
     void blur(const Case& which) {
         const Scene scene = load_scene(which.source);
         const LensInfo lens = scene.cameras.empty() ? LensInfo{} : scene.cameras.front().lens;
@@ -169,12 +169,14 @@ int main(int argc, char** argv) {
     pentaprism::set_thread_count(1);
     const Case hand{"hand, defocus", "builtin:hand", Effect::kDefocus, 24},
         car{"car, motion", "builtin:car", Effect::kMotion, 24},
-        forest{"fairy-forest, both", "builtin:fairy-forest", Effect::kBoth, 24};
+        forest{"fairy-forest, both", "builtin:fairy-forest", Effect::kBoth, 24},
+        moving{"fairy-forest, motion", "builtin:fairy-forest", Effect::kMotion, 24},
+        unfocused{"fairy-forest, defocus", "builtin:fairy-forest", Effect::kDefocus, 24};
     Curves curves(runs);
-    curves.triangles(hand, 4);
-    curves.triangles(car, 3);
+    curves.triangles(hand, 5);
+    curves.triangles(car, 4);
     for (const Case& which : {hand, car, forest}) curves.samples(which);
-    curves.blur(forest);
+    for (const Case& which : {forest, moving, unfocused}) curves.blur(which);
     curves.size(forest);
     curves.finish();
 }

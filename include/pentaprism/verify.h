@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <pentaprism/render.h>
 #include <string>
+#include <vector>
 
 namespace pentaprism {
 
@@ -29,13 +30,22 @@ struct VerifyReport {
 VerifyReport verify_frame(const Scene& scene, const RenderSettings& settings, double frame,
                           const Progress& progress = {});
 
+/// One configuration of Embree on a frame; the trace is judged by a part of the tiles.
+struct PeerTrial {
+    std::string peer;
+    double build_ms = 0.0, trace_ms = 0.0;
+};
+
 /// Visibility alone, timed against Embree on the same samples: medians of alternating runs, milliseconds.
 struct PeerTimes {
     std::string scene, peer;
     int width = 0, height = 0, spp = 0, threads = 0, runs = 0;
     double build_ms = 0.0, trace_ms = 0.0, ours_ms = 0.0;
+    std::vector<PeerTrial> trials;  ///< what was tried before the fastest was chosen
     double ratio() const { return ours_ms > 0.0 ? (build_ms + trace_ms) / ours_ms : 0.0; }
 };
-PeerTimes time_against_embree(const Scene& scene, const RenderSettings& settings, double frame, int runs);
+/// `every_trial`: also what is not in the contest: robust mode, and a hierarchy that is refitted instead of built.
+PeerTimes time_against_embree(const Scene& scene, const RenderSettings& settings, double frame, int runs,
+                              bool every_trial = false);
 
 }  // namespace pentaprism

@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 #include <map>
 #include <pentaprism/error.h>
+#include <tuple>
 #include <vector>
 
+#include "base/aligned.h"
 #include "base/parallel.h"
 #include "bound/local_triangle.h"
 #include "cover/exact.h"
@@ -23,15 +25,30 @@ constexpr float kLargest = 1e12f;  // a triangle with a coordinate beyond this i
 struct GroupKey {
     int knots;
     bool asks;
+    std::uint32_t part = 0;  // only where each is a geometry
     bool operator<(const GroupKey& other) const {
-        return knots != other.knots ? knots < other.knots : asks < other.asks;
+        return std::tie(knots, asks, part) < std::tie(other.knots, other.asks, other.part);
     }
 };
+
+RTCBuildQuality quality(EmbreeBuild build) {
+    switch (build) {
+        case EmbreeBuild::kLow:
+            return RTC_BUILD_QUALITY_LOW;
+        case EmbreeBuild::kHigh:
+            return RTC_BUILD_QUALITY_HIGH;
+        case EmbreeBuild::kMedium:
+            break;
+    }
+    return RTC_BUILD_QUALITY_MEDIUM;
+}
 
 struct Group {
     std::vector<std::uint32_t> parts;
     std::vector<std::uint32_t> triangles;  // of the frame, by Embree's primitive
     bool asks = false;                     // one-sided or not opaque: every hit needs a look
+    int knots = 1;
+    RTCGeometry geometry = nullptr;  // the scene's
 };
 
 struct Point3 {
@@ -71,7 +88,13 @@ float axis_scale(const View& view) {
 class EmbreeTracer::Impl {
   public:
     Impl(const Frame& frame, const SampleTable& table, const EmbreeOptions& options)
-        : frame_(frame), table_(table), scale_(axis_scale(frame.view)), for_speed_(options.for_speed) {
+        : frame_(frame),
+          table_(table),
+          scale_(axis_scale(frame.view)),
+          for_speed_(options.for_speed),
+          quick_lines_(options.for_speed && frame.view.lens.tilt == glm::dvec2(0.0)),
+          coherent_(options.coherent),
+          rays_(options.rays) {
         const std::string configuration =
             fmt::format("threads={}{}{}", thread_count(), options.device.empty() ? "" : ",", options.device);
         device_ = rtcNewDevice(configuration.c_str());
@@ -93,11 +116,28 @@ class EmbreeTracer::Impl {
         }
     }
 
+    void refit() {
+        for (Group& group : groups_) {
+            if (group.triangles.empty()) continue;
+            rtcSetGeometryBuildQuality(group.geometry, RTC_BUILD_QUALITY_REFIT);
+            for (int knot = 0; knot < group.knots; ++knot) {
+                const auto slot = static_cast<unsigned>(knot);
+                fill_vertices(
+                    group, knot,
+                    static_cast<Point3*>(rtcGetGeometryBufferData(group.geometry, RTC_BUFFER_TYPE_VERTEX, slot)));
+                rtcUpdateGeometryBuffer(group.geometry, RTC_BUFFER_TYPE_VERTEX, slot);
+            }
+            rtcCommitGeometry(group.geometry);
+        }
+        rtcCommitScene(scene_);
+        check(device_);
+    }
+
   private:
     /// What the filter needs to know of a packet beside the rays.
     struct Context : RTCIntersectContext {
         const Impl* self;
-        const SampleVector* vector;
+        const SampleVector* vectors;  // of the block; a ray's id is its lane in these
         const std::uint16_t* indices;
         int bx, by;
     };
@@ -109,9 +149,15 @@ class EmbreeTracer::Impl {
                         "or zoom of a lens do not have");
         }
         scene_ = rtcNewScene(device_);
-        if (!options.for_speed) rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-        rtcSetSceneBuildQuality(scene_, options.fast_build ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM);
+        int flags = RTC_SCENE_FLAG_NONE;
+        if (!options.for_speed || options.robust_speed) flags |= RTC_SCENE_FLAG_ROBUST;
+        if (options.dynamic) flags |= RTC_SCENE_FLAG_DYNAMIC;
+        rtcSetSceneFlags(scene_, static_cast<RTCSceneFlags>(flags));
+        rtcSetSceneBuildQuality(scene_, quality(options.build));
         std::map<GroupKey, Group> groups;
+        int most_knots = 1;
+        for (const Part& part : frame_.parts)
+            if (part.moves) most_knots = std::max(most_knots, part.segments + 1);
         for (std::uint32_t i = 0; i < frame_.parts.size(); ++i) {
             const Part& part = frame_.parts[i];
             const int knots = part.moves ? part.segments + 1 : 1;
@@ -121,22 +167,28 @@ class EmbreeTracer::Impl {
                                                              kMaxSegments, part.segments));
             }
             const bool asks = (!part.two_sided && !for_speed_) || part.alpha_mode != AlphaMode::kOpaque;
-            Group& group = groups[{knots, asks}];
+            GroupKey key{knots, asks};
+            if (options.layout == EmbreeLayout::kTogether && !part.moves) key.knots = most_knots;
+            if (options.layout == EmbreeLayout::kParts) key.part = i;
+            Group& group = groups[key];
             group.asks = asks;
+            group.knots = key.knots;
             group.parts.push_back(i);
         }
         groups_.reserve(groups.size());  // geometries keep pointers to them
         for (auto& [key, group] : groups) {
             groups_.push_back(std::move(group));
-            attach(groups_.back(), key.knots, options);
+            attach(groups_.back(), options);
         }
         rtcCommitScene(scene_);
         check(device_);
     }
 
-    void attach(Group& group, int knots, const EmbreeOptions& options) {
+    void attach(Group& group, const EmbreeOptions& options) {
+        const int knots = group.knots;
         RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-        rtcSetGeometryBuildQuality(geometry, options.fast_build ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM);
+        group.geometry = geometry;
+        rtcSetGeometryBuildQuality(geometry, quality(options.build));
         rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(knots));
 
         std::vector<std::uint32_t> first_vertex;  // of each part in the geometry's buffers
@@ -182,7 +234,8 @@ class EmbreeTracer::Impl {
     void fill_vertices(const Group& group, int knot, Point3* out) const {
         for (const std::uint32_t i : group.parts) {
             const Part& part = frame_.parts[i];
-            const std::size_t first = part.first_point + static_cast<std::size_t>(knot) * part.vertex_count;
+            const std::size_t first =
+                part.first_point + (part.moves ? static_cast<std::size_t>(knot) * part.vertex_count : 0);
             for (std::uint32_t v = 0; v < part.vertex_count; ++v) {
                 const glm::vec4& p = frame_.points[first + v];
                 const float z = frame_.view.perspective ? p.z : frame_.depths[first + v];
@@ -191,61 +244,173 @@ class EmbreeTracer::Impl {
         }
     }
 
-    /// Sets up the line of sight of one lane: origin + depth * direction.
-    void aim(RTCRay16& ray, int lane, double gx, double gy, double u, double v) const {
-        const LineOfSight line = line_of_sight(frame_.view, gx, gy, u, v);
-        ray.org_x[lane] = static_cast<float>(line.origin.x * scale_);
-        ray.org_y[lane] = static_cast<float>(line.origin.y * scale_);
-        ray.org_z[lane] = 0.0f;
-        ray.dir_x[lane] = static_cast<float>(line.direction.x * scale_);
-        ray.dir_y[lane] = static_cast<float>(line.direction.y * scale_);
-        ray.dir_z[lane] = 1.0f;
+    /// Origin + depth * direction, in (x, y); 0 + depth * 1 in z.
+    struct Line {
+        float origin_x, origin_y, direction_x, direction_y;
+    };
+    Line line_of(const CellCentre& centre, const SampleVector& samples, int lane) const {
+        const LineOfSight line = line_of_sight(frame_.view, centre.x + samples.x[lane], centre.y + samples.y[lane],
+                                               samples.u[lane], samples.v[lane]);
+        return {static_cast<float>(line.origin.x * scale_), static_cast<float>(line.origin.y * scale_),
+                static_cast<float>(line.direction.x * scale_), static_cast<float>(line.direction.y * scale_)};
+    }
+
+    /// The rays of a vector from its lane `first` on, as many as the packet holds. `id`: of the first.
+    template <class Packet>
+    void fill(Packet& packet, int count, const CellCentre& centre, const SampleVector& samples, int first,
+              unsigned id) const {
+        const float depth_near = static_cast<float>(frame_.view.depth_near),
+                    depth_far = static_cast<float>(frame_.view.depth_far);
+        if (quick_lines_)
+            fill_quickly(packet.ray, count, centre, samples, first);
+        else
+            for (int k = 0; k < count; ++k) {
+                const Line line = line_of(centre, samples, first + k);
+                packet.ray.org_x[k] = line.origin_x;
+                packet.ray.org_y[k] = line.origin_y;
+                packet.ray.dir_x[k] = line.direction_x;
+                packet.ray.dir_y[k] = line.direction_y;
+            }
+        std::fill_n(packet.ray.org_z, count, 0.0f);
+        std::fill_n(packet.ray.dir_z, count, 1.0f);
+        std::fill_n(packet.ray.tnear, count, depth_near);
+        std::fill_n(packet.ray.tfar, count, depth_far);
+        std::copy_n(samples.t + first, count, packet.ray.time);
+        std::fill_n(packet.ray.mask, count, 0xffffffffu);
+        for (int k = 0; k < count; ++k) packet.ray.id[k] = id + static_cast<unsigned>(k);
+        std::fill_n(packet.ray.flags, count, 0u);
+        std::fill_n(packet.hit.geomID, count, RTC_INVALID_GEOMETRY_ID);
+        std::fill_n(packet.hit.instID[0], count, RTC_INVALID_GEOMETRY_ID);
+    }
+
+    /// line_of() in float, which the compiler makes vectors of: making rays must not count against Embree.
+    template <class Rays>
+    void fill_quickly(Rays& ray, int count, const CellCentre& centre, const SampleVector& samples, int first) const {
+        const float a = static_cast<float>(frame_.view.lens.a) * scale_,
+                    b = static_cast<float>(frame_.view.lens.b) * scale_;
+        const float to_origin = frame_.view.perspective ? 0.0f : scale_, to_direction = scale_ - to_origin;
+        for (int k = 0; k < count; ++k) {
+            const float gx = centre.x + samples.x[first + k], gy = centre.y + samples.y[first + k];
+            const float u = samples.u[first + k], v = samples.v[first + k];
+            ray.org_x[k] = gx * to_origin - a * u;
+            ray.org_y[k] = gy * to_origin - a * v;
+            ray.dir_x[k] = gx * to_direction - b * u;
+            ray.dir_y[k] = gy * to_direction - b * v;
+        }
+    }
+
+    void store(Hits& hits, std::size_t place, unsigned geometry, unsigned primitive, float depth) const {
+        if (geometry == RTC_INVALID_GEOMETRY_ID) return;
+        hits.depth[place] = depth;
+        hits.triangle[place] = groups_[geometry].triangles[primitive];
+    }
+
+    template <class Packet>
+    void store_packet(Hits& hits, std::size_t place, const Packet& packet, int count, const int* valid) const {
+        for (int k = 0; k < count; ++k)
+            if (valid[k]) store(hits, place + k, packet.hit.geomID[k], packet.hit.primID[k], packet.ray.tfar[k]);
+    }
+
+    /// One block of 4x4 pixels of a tile.
+    struct Block {
+        CellCentre centre;
+        std::span<const SampleVector> vectors;
+        std::size_t first;              // of its samples in Hits
+        alignas(64) int valid[kLanes];  // lanes in the picture
+    };
+
+    template <class Packet, int kCount, class Intersect>
+    void trace_packets(const Block& block, Context& context, Hits& hits, Intersect intersect) const {
+        alignas(64) Packet packet;
+        for (std::size_t slot = 0; slot < block.vectors.size(); ++slot)
+            for (int lane = 0; lane < kLanes; lane += kCount) {
+                fill(packet, kCount, block.centre, block.vectors[slot], lane,
+                     static_cast<unsigned>(slot * kLanes + lane));
+                intersect(block.valid + lane, scene_, &context, &packet);
+                store_packet(hits, block.first + slot * kLanes + lane, packet, kCount, block.valid + lane);
+            }
+    }
+
+    void trace_packet_stream(const Block& block, Context& context, Hits& hits) const {
+        static thread_local AlignedVector<RTCRayHit16> packets;
+        packets.resize(block.vectors.size());
+        for (std::size_t slot = 0; slot < packets.size(); ++slot) {
+            fill(packets[slot], kLanes, block.centre, block.vectors[slot], 0, static_cast<unsigned>(slot * kLanes));
+            for (int lane = 0; lane < kLanes; ++lane)  // a ray that ends before it begins hits nothing
+                if (!block.valid[lane]) packets[slot].ray.tfar[lane] = -1.0f;
+        }
+        rtcIntersectNM(scene_, &context, reinterpret_cast<RTCRayHitN*>(packets.data()), kLanes,
+                       static_cast<unsigned>(packets.size()), sizeof(RTCRayHit16));
+        for (std::size_t slot = 0; slot < packets.size(); ++slot)
+            store_packet(hits, block.first + slot * kLanes, packets[slot], kLanes, block.valid);
+    }
+
+    RTCRayHit single(const Block& block, std::size_t slot, int lane) const {
+        const SampleVector& s = block.vectors[slot];
+        const Line line = line_of(block.centre, s, lane);
+        RTCRayHit one{};
+        one.ray.org_x = line.origin_x, one.ray.org_y = line.origin_y;
+        one.ray.dir_x = line.direction_x, one.ray.dir_y = line.direction_y, one.ray.dir_z = 1.0f;
+        // A ray that ends before it begins hits nothing.
+        one.ray.tnear = static_cast<float>(frame_.view.depth_near);
+        one.ray.tfar = block.valid[lane] ? static_cast<float>(frame_.view.depth_far) : -1.0f;
+        one.ray.time = s.t[lane];
+        one.ray.mask = 0xffffffffu;
+        one.ray.id = static_cast<unsigned>(slot * kLanes + lane);
+        one.hit.geomID = one.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        return one;
+    }
+
+    void trace_singles(const Block& block, Context& context, Hits& hits) const {
+        for (std::size_t slot = 0; slot < block.vectors.size(); ++slot)
+            for (int lane = 0; lane < kLanes; ++lane) {
+                if (!block.valid[lane]) continue;
+                alignas(16) RTCRayHit one = single(block, slot, lane);
+                rtcIntersect1(scene_, &context, &one);
+                store(hits, block.first + slot * kLanes + lane, one.hit.geomID, one.hit.primID, one.ray.tfar);
+            }
+    }
+
+    void trace_stream(const Block& block, Context& context, Hits& hits) const {
+        static thread_local AlignedVector<RTCRayHit> rays;
+        rays.clear();
+        for (std::size_t slot = 0; slot < block.vectors.size(); ++slot)
+            for (int lane = 0; lane < kLanes; ++lane) rays.push_back(single(block, slot, lane));
+        rtcIntersect1M(scene_, &context, rays.data(), static_cast<unsigned>(rays.size()), sizeof(RTCRayHit));
+        for (std::size_t k = 0; k < rays.size(); ++k)
+            store(hits, block.first + k, rays[k].hit.geomID, rays[k].hit.primID, rays[k].ray.tfar);
     }
 
     void trace_block(const Tile& tile, int bx, int by, Hits& hits) const {
-        const View& view = frame_.view;
-        const CellCentre centre = cell_centre(view, bx / kCellBlocks, by / kCellBlocks);
-        const float depth_near = static_cast<float>(view.depth_near), depth_far = static_cast<float>(view.depth_far);
-        alignas(64) int valid[kLanes];
-        alignas(64) RTCRayHit16 packet;
+        static thread_local std::vector<SampleVector> room;
+        Block block{cell_centre(frame_.view, bx / kCellBlocks, by / kCellBlocks), table_.block(bx, by, room), 0, {}};
+        block.first = (kCellBlocks * static_cast<std::size_t>(by % kCellBlocks) + bx % kCellBlocks) *
+                      block.vectors.size() * kLanes;
         for (int lane = 0; lane < kLanes; ++lane) {
             const int px = bx * kBlockSize + lane % kBlockSize, py = by * kBlockSize + lane / kBlockSize;
-            valid[lane] = px < tile.x1 && py < tile.y1 ? -1 : 0;
+            block.valid[lane] = px < tile.x1 && py < tile.y1 ? -1 : 0;
         }
         Context context;
         rtcInitIntersectContext(&context);
-        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        context.flags = coherent_ ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
         context.self = this;
+        context.vectors = block.vectors.data();
+        context.indices = table_.indices(bx, by).data();
         context.bx = bx;
         context.by = by;
-
-        static thread_local std::vector<SampleVector> room;
-        const std::span<const SampleVector> vectors = table_.block(bx, by, room);
-        const std::span<const std::uint16_t> indices = table_.indices(bx, by);
-        const std::size_t block = kCellBlocks * static_cast<std::size_t>(by % kCellBlocks) + bx % kCellBlocks;
-        for (std::size_t slot = 0; slot < vectors.size(); ++slot) {
-            const SampleVector& samples = vectors[slot];
-            context.vector = &samples;
-            context.indices = &indices[slot * kLanes];
-            for (int lane = 0; lane < kLanes; ++lane) {
-                aim(packet.ray, lane, centre.x + samples.x[lane], centre.y + samples.y[lane], samples.u[lane],
-                    samples.v[lane]);
-                packet.ray.tnear[lane] = depth_near;
-                packet.ray.tfar[lane] = depth_far;
-                packet.ray.time[lane] = samples.t[lane];
-                packet.ray.mask[lane] = 0xffffffffu;
-                packet.ray.id[lane] = static_cast<unsigned>(lane);
-                packet.ray.flags[lane] = 0;
-                packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-                packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
-            }
-            rtcIntersect16(valid, scene_, &context, &packet);
-            const std::size_t first = (block * vectors.size() + slot) * kLanes;
-            for (int lane = 0; lane < kLanes; ++lane) {
-                if (!valid[lane] || packet.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;
-                hits.depth[first + lane] = packet.ray.tfar[lane];
-                hits.triangle[first + lane] = groups_[packet.hit.geomID[lane]].triangles[packet.hit.primID[lane]];
-            }
+        switch (rays_) {
+            case EmbreeRays::kPacket16:
+                return trace_packets<RTCRayHit16, 16>(block, context, hits, rtcIntersect16);
+            case EmbreeRays::kPacket8:
+                return trace_packets<RTCRayHit8, 8>(block, context, hits, rtcIntersect8);
+            case EmbreeRays::kPacket4:
+                return trace_packets<RTCRayHit4, 4>(block, context, hits, rtcIntersect4);
+            case EmbreeRays::kSingle:
+                return trace_singles(block, context, hits);
+            case EmbreeRays::kStream:
+                return trace_stream(block, context, hits);
+            case EmbreeRays::kPacketStream16:
+                return trace_packet_stream(block, context, hits);
         }
     }
 
@@ -273,30 +438,32 @@ class EmbreeTracer::Impl {
                                RTCHitN_Ng_z(arguments.hit, n, i) * RTCRayN_dir_z(arguments.ray, n, i) >
                            0.0f;
         if (!front && !frame.parts[frame.part_of[triangle]].two_sided) return false;
-        return context.self->is_opaque(context, triangle, static_cast<int>(RTCRayN_id(arguments.ray, n, i)));
+        return context.self->is_opaque(context, triangle, RTCRayN_id(arguments.ray, n, i));
     }
 
     static bool is_hit_quick(const Context& context, const RTCFilterFunctionNArguments& arguments, unsigned i,
                              std::uint32_t triangle) {
         const float u = RTCHitN_u(arguments.hit, arguments.N, i), v = RTCHitN_v(arguments.hit, arguments.N, i);
         const float barycentrics[3] = {1.0f - u - v, u, v};
-        const int lane = static_cast<int>(RTCRayN_id(arguments.ray, arguments.N, i));
+        const unsigned id = RTCRayN_id(arguments.ray, arguments.N, i);
+        const int lane = static_cast<int>(id % kLanes);
         return is_opaque_at(context.self->frame_, triangle, barycentrics, context.bx * kBlockSize + lane % kBlockSize,
-                            context.by * kBlockSize + lane / kBlockSize, context.indices[lane], context.self->table_);
+                            context.by * kBlockSize + lane / kBlockSize, context.indices[id], context.self->table_);
     }
 
     /// The rule of the coverage stage, at its own barycentrics: a mask's edge is the same edge.
-    bool is_opaque(const Context& context, std::uint32_t triangle, int lane) const {
+    bool is_opaque(const Context& context, std::uint32_t triangle, unsigned id) const {
         const Part& part = frame_.parts[frame_.part_of[triangle]];
         if (part.alpha_mode == AlphaMode::kOpaque) return true;
-        const SampleVector& v = *context.vector;
+        const SampleVector& v = context.vectors[id / kLanes];
+        const int lane = static_cast<int>(id % kLanes);
         // In double the product is exact, as the exact test's own is.
         const int segment = part.moves ? static_cast<int>(static_cast<double>(v.t[lane]) * part.segments) : 0;
         const CellCentre centre = cell_centre(frame_.view, context.bx / kCellBlocks, context.by / kCellBlocks);
         const SampleHit hit = project_sample(localize(frame_, triangle, segment, centre),
                                              {v.x[lane], v.y[lane], v.u[lane], v.v[lane], v.t[lane]});
         return is_opaque_at(frame_, triangle, hit.barycentrics, context.bx * kBlockSize + lane % kBlockSize,
-                            context.by * kBlockSize + lane / kBlockSize, context.indices[lane], table_);
+                            context.by * kBlockSize + lane / kBlockSize, context.indices[id], table_);
     }
 
     void release() {
@@ -307,7 +474,8 @@ class EmbreeTracer::Impl {
     const Frame& frame_;
     const SampleTable& table_;
     float scale_;
-    bool for_speed_;
+    bool for_speed_, quick_lines_, coherent_;
+    EmbreeRays rays_;
     RTCDevice device_ = nullptr;
     RTCScene scene_ = nullptr;
     std::vector<Group> groups_;
@@ -316,6 +484,9 @@ class EmbreeTracer::Impl {
 EmbreeTracer::EmbreeTracer(const Frame& frame, const SampleTable& table, const EmbreeOptions& options)
     : impl_(std::make_unique<Impl>(frame, table, options)) {}
 EmbreeTracer::~EmbreeTracer() = default;
+void EmbreeTracer::refit() {
+    impl_->refit();
+}
 void EmbreeTracer::trace(const Tile& tile, Hits& hits) const {
     impl_->trace(tile, hits);
 }

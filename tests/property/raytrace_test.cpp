@@ -9,6 +9,9 @@
 #include "render/visibility.h"
 #include "support/found.h"
 #include "support/random_frame.h"
+#ifdef PENTAPRISM_HAVE_EMBREE
+#include "trace/embree_tracer.h"
+#endif
 
 namespace pentaprism {
 namespace {
@@ -71,6 +74,69 @@ TEST_F(Raytrace, DoesNotDependOnThreadsTilesOrTheBuild) {
             EXPECT_TRUE(many == one) << threads << " threads, tiles of " << tile_size;
         }
 }
+
+#ifdef PENTAPRISM_HAVE_EMBREE
+Found trace_with(const PosedPicture& picture, const EmbreeOptions& options, bool refit = false) {
+    EmbreeTracer tracer(picture.frame, picture.samples, options);
+    if (refit) tracer.refit();
+    Found found;
+    Hits hits;
+    const View& view = picture.frame.view;
+    for (const Tile& tile : tiles_over({0, view.width, 0, view.height}, kCellSize)) {
+        hits.reset(picture.samples.slots());
+        tracer.trace(tile, hits);
+        found.triangles.insert(found.triangles.end(), hits.triangle.begin(), hits.triangle.end());
+        found.depths.insert(found.depths.end(), hits.depth.begin(), hits.depth.end());
+    }
+    return found;
+}
+
+TEST_F(Raytrace, SeesTheSameHoweverEmbreeIsSetUpForSpeed) {
+    // What is timed against must do the work: each configuration, cut-out leaves and moving parts among them, but for
+    // samples on edges. Sizes that are no multiple of a block leave some rays out.
+    for (const char* name : {"builtin:hand", "builtin:fairy-forest"}) {
+        const Scene scene = load_scene(name);
+        RenderSettings settings;
+        settings.image.width = 150;
+        settings.image.height = 90;
+        settings.image.spp = 4;
+        settings.shutter.shutter = 1.0;
+        const PosedPicture picture = pose_picture(scene, settings, 24);
+        EmbreeOptions speed;
+        speed.for_speed = true;
+        const Found usual = trace_with(picture, speed);
+        EXPECT_GT(usual.hits(), 10000);
+        const auto same = [&](const EmbreeOptions& options, const char* what, bool refit = false) {
+            const int different = trace_with(picture, options, refit).count_other_triangles(usual);
+            EXPECT_LE(different, static_cast<int>(usual.triangles.size() / 2000)) << name << ", " << what;
+        };
+        for (const EmbreeRays rays : {EmbreeRays::kPacket8, EmbreeRays::kPacket4, EmbreeRays::kSingle,
+                                      EmbreeRays::kStream, EmbreeRays::kPacketStream16}) {
+            EmbreeOptions options = speed;
+            options.rays = rays;
+            same(options, "rays");
+        }
+        for (const EmbreeLayout layout : {EmbreeLayout::kTogether, EmbreeLayout::kParts}) {
+            EmbreeOptions options = speed;
+            options.layout = layout;
+            same(options, "layout");
+        }
+        for (const EmbreeBuild build : {EmbreeBuild::kLow, EmbreeBuild::kHigh}) {
+            EmbreeOptions options = speed;
+            options.build = build;
+            same(options, "build");
+        }
+        EmbreeOptions other = speed;
+        other.device = "tri_accel_mb=bvh8.triangle4vmb,tri_accel=bvh8.triangle4v";
+        other.coherent = false;
+        other.robust_speed = true;
+        same(other, "hierarchy");
+        other = speed;
+        other.dynamic = true;
+        same(other, "refit", true);
+    }
+}
+#endif
 
 }  // namespace
 }  // namespace pentaprism

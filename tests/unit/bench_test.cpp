@@ -281,6 +281,9 @@ TEST(BenchReport, ThePageNeedsNothingElseAndItsTagsAreBalanced) {
                   count_of(page, "</" + name + ">"))
             << tag;
     }
+    // A point for each time against a ray tracer, at the place of its ratio.
+    EXPECT_EQ(count_of(page, "both: 10.0 + 20.0 ms over 15.0 ms"), 1u);
+    EXPECT_NE(page.find("Embree's time over ours"), std::string::npos);
     // Every row stands in the table of all rows.
     EXPECT_EQ(count_of(page.substr(page.find("id=\"all\"")), "<tr>"), 7u);
 }
