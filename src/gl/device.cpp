@@ -142,7 +142,8 @@ void Device::look_around() {
     max_size_ = std::min(limit(GL_MAX_TEXTURE_SIZE), limit(GL_MAX_VIEWPORT_DIMS));
     // A sample takes a texel of a buffer texture and 8 bytes of a storage block.
     most_block_bytes_ = limit(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
-    most_entries_ = std::min<std::int64_t>(limit(GL_MAX_TEXTURE_BUFFER_SIZE), most_block_bytes_ / 8);
+    most_texels_ = limit(GL_MAX_TEXTURE_BUFFER_SIZE);
+    most_entries_ = std::min(most_texels_, most_block_bytes_ / 8);
     fused_ = fma_rounds_once();
     check("asking the driver");
 }
