@@ -14,9 +14,9 @@ constexpr GLenum kStorage = GL_SHADER_STORAGE_BUFFER;
 
 // As the shaders read them (std430).
 struct PartRecord {  // shade/shaded_part.glsl
-    std::int32_t material = 0, positions = 0, normals = 0, tangents = -1, texcoords[2] = {-1, -1}, colors = -1;
+    std::int32_t material = 0, positions = -1, normals = -1, tangents = -1, texcoords = -1, colors = -1;
     std::uint32_t first_point = 0, first_triangle = 0, vertex_count = 0;
-    std::int32_t segments = 1, moves = 0;
+    std::int32_t segments = 1, moves = 0, coordinate_sets = 0;
 };
 static_assert(sizeof(PartRecord) == 48);
 
@@ -36,7 +36,7 @@ static_assert(sizeof(TextureRecord) == 48);
 struct MaterialRecord {  // shade/shaded_triangle.glsl
     float base_color[4], emissive[4], specular_color[4], sheen_color[4];
     float metallic, roughness, normal_scale, ior, coat, coat_roughness, coat_normal_scale, transmission;
-    std::int32_t unlit, textured, layered, reflects;
+    std::int32_t unlit, textures_used, layered, reflects;
     TextureRecord textures[13];
 };
 static_assert(sizeof(MaterialRecord) == 736);
@@ -81,30 +81,42 @@ Buffer storage(const std::vector<T>& values) {
     return Buffer(values.size() * sizeof(T), values.data());
 }
 
-// Numbers of vertices, one after the other.
+glm::vec4 four(const glm::vec3& v) {
+    return glm::vec4(v, 0.0f);
+}
+glm::vec4 four(const glm::vec4& v) {
+    return v;
+}
+
+// What vertices carry, four numbers each, one after the other.
 class Attributes {
   public:
     template <class T>
     std::int32_t add(const std::vector<T>& values) {
         if (values.empty()) return -1;
-        const std::size_t first = numbers_.size(), count = values.size() * sizeof(T) / sizeof(float);
-        const float* from = &values[0][0];
-        numbers_.insert(numbers_.end(), from, from + count);
+        const std::size_t first = vectors_.size();
+        for (const T& value : values) vectors_.push_back(four(value));
         return static_cast<std::int32_t>(first);
     }
-    /// The same, once for all placements of a primitive.
-    template <class T>
-    std::int32_t add_once(const std::vector<T>& values) {
-        if (values.empty()) return -1;
-        const auto [place, is_new] = known_.emplace(values.data(), 0);
-        if (is_new) place->second = add(values);
+    /// The same of what all placements of a primitive share.
+    std::int32_t add_colors(const Primitive& primitive) {
+        const auto [place, is_new] = colors_.emplace(&primitive, -1);
+        if (is_new) place->second = add(primitive.colors);
         return place->second;
     }
-    const std::vector<float>& numbers() const { return numbers_; }
+    std::int32_t add_coordinates(const Primitive& primitive) {
+        const auto& [one, two] = primitive.texcoords;
+        if (one.empty() && two.empty()) return -1;
+        const auto [place, is_new] = coordinates_.emplace(&primitive, static_cast<std::int32_t>(vectors_.size()));
+        for (std::size_t i = 0; is_new && i < primitive.positions.size(); ++i)
+            vectors_.emplace_back(one.empty() ? glm::vec2(0.0f) : one[i], two.empty() ? glm::vec2(0.0f) : two[i]);
+        return place->second;
+    }
+    const std::vector<glm::vec4>& vectors() const { return vectors_; }
 
   private:
-    std::vector<float> numbers_;
-    std::map<const void*, std::int32_t> known_;
+    std::vector<glm::vec4> vectors_;
+    std::map<const Primitive*, std::int32_t> colors_, coordinates_;
 };
 
 // Pyramids, each once, and their texels.
@@ -160,7 +172,7 @@ MaterialRecord material_record(const BoundMaterial& bound, PyramidList& pyramids
     out.metallic = m.metallic, out.roughness = m.roughness, out.normal_scale = m.normal_scale, out.ior = m.ior;
     out.coat = m.clearcoat, out.coat_roughness = m.clearcoat_roughness;
     out.coat_normal_scale = m.clearcoat_normal_scale, out.transmission = m.transmission;
-    out.unlit = m.unlit ? 1 : 0, out.textured = bound.textured ? 1 : 0, out.layered = bound.layered ? 1 : 0;
+    out.unlit = m.unlit ? 1 : 0, out.layered = bound.layered ? 1 : 0;
     out.reflects = m.ior != 1.5f || m.specular != 1.0f || m.specular_color != glm::vec3(1.0f) ||
                    bound.specular.pyramid || bound.specular_color.pyramid;
     const std::pair<const BoundTexture*, bool> textures[13] = {
@@ -171,7 +183,10 @@ MaterialRecord material_record(const BoundMaterial& bound, PyramidList& pyramids
         {&bound.coat_roughness, false}, {&bound.coat_normal, false},
         {&bound.sheen_color, true},     {&bound.sheen_roughness, false},
         {&bound.transmission, false}};
-    for (int i = 0; i < 13; ++i) out.textures[i] = texture_record(*textures[i].first, textures[i].second, pyramids);
+    for (int i = 0; i < 13; ++i) {
+        out.textures[i] = texture_record(*textures[i].first, textures[i].second, pyramids);
+        if (out.textures[i].pyramid >= 0) out.textures_used = i + 1;
+    }
     return out;
 }
 
@@ -214,14 +229,16 @@ void ShadingUpload::put_frame(const Device& device, const ShadingScene& scene) {
         out.positions = attributes.add(shaded.positions);
         out.normals = attributes.add(shaded.normals);
         out.tangents = attributes.add(shaded.tangents);
-        for (int set = 0; set < 2; ++set) out.texcoords[set] = attributes.add_once(shaded.primitive->texcoords[set]);
-        out.colors = attributes.add_once(shaded.primitive->colors);
+        out.texcoords = attributes.add_coordinates(*shaded.primitive);
+        for (int set = 0; set < 2; ++set)
+            if (!shaded.primitive->texcoords[set].empty()) out.coordinate_sets |= 1 << set;
+        out.colors = attributes.add_colors(*shaded.primitive);
         out.first_point = part.first_point, out.first_triangle = part.first_triangle;
         out.vertex_count = part.vertex_count;
         out.segments = part.segments, out.moves = part.moves ? 1 : 0;
-        check_room(static_cast<std::int64_t>(attributes.numbers().size()), device.most_texels(), "the geometry");
+        check_room(static_cast<std::int64_t>(attributes.vectors().size()), device.most_texels(), "the geometry");
     }
-    attributes_ = texels(attributes.numbers(), 1, GL_R32F, "the geometry");
+    attributes_ = texels(attributes.vectors(), 1, GL_RGBA32F, "the geometry");
     std::map<const BoundMaterial*, std::int32_t> numbers;  // as put_materials() counts them
     for (std::size_t i = 0; i < parts.size(); ++i)
         parts[i].material =
@@ -321,14 +338,16 @@ void ShadingUpload::put_shadows(const Device& device, const ShadingScene& scene)
     for (const Part& part : world.parts)
         parts.push_back({part.vertex_count, part.moves ? part.segments : 1, part.moves ? 1 : 0, 0});
     world_parts_ = storage(parts);
-    check_room(3 * static_cast<std::int64_t>(world.points.size()), device.most_texels(), "the geometry");
-    world_points_ = TexelBuffer(world.points.size() * sizeof(glm::vec3), world.points.data(), GL_R32F);
+    check_room(static_cast<std::int64_t>(world.points.size()), device.most_texels(), "the geometry");
+    std::vector<glm::vec4> points;
+    points.reserve(world.points.size());
+    for (const glm::vec3& point : world.points) points.push_back(four(point));
+    world_points_ = TexelBuffer(points.size() * sizeof(glm::vec4), points.data(), GL_RGBA32F);
     world_corners_ = TexelBuffer(world.corners.size() * sizeof(std::uint32_t), world.corners.data(), GL_R32UI);
-    std::vector<float> samples;
+    std::vector<glm::vec4> samples;
     for (const ShadowSamples::Cell& cell : shadows.samples().cells())
-        for (int i = 0; i < ShadowSamples::kPerCell; ++i)
-            samples.insert(samples.end(), {cell.x[i], cell.y[i], cell.t[i]});
-    map_samples_ = TexelBuffer(samples.size() * sizeof(float), samples.data(), GL_R32F);
+        for (int i = 0; i < ShadowSamples::kPerCell; ++i) samples.emplace_back(cell.x[i], cell.y[i], cell.t[i], 0.0f);
+    map_samples_ = TexelBuffer(samples.size() * sizeof(glm::vec4), samples.data(), GL_RGBA32F);
 }
 
 void ShadingUpload::set_uniforms(const Program& program, const ShadingScene& scene) const {

@@ -39,22 +39,22 @@ ivec2 level_size(int p, int level) {
     return max(ivec2(1), ivec2(pyramids[p].width, pyramids[p].height) >> level);
 }
 
-// The two texels on both sides of a coordinate, and the share of the second.
+// The two texels on both sides of a coordinate, and the share of the second; without it where the nearest is wanted.
 struct Between {
     int first, second;
     float share;
 };
 
-Between between(int wrap, float coordinate, int n) {
-    float x = reduced(wrap, coordinate) * float(n) - 0.5;
+Between between(int wrap, float coordinate, int n, bool nearest) {
+    float x = reduced(wrap, coordinate) * float(n) - (nearest ? 0.0 : 0.5);
     float below = floor(x);
     int i = int(below);
-    return Between(wrapped(wrap, i, n), wrapped(wrap, i + 1, n), x - below);
+    return Between(wrapped(wrap, i, n), wrapped(wrap, i + 1, n), nearest ? 0.0 : x - below);
 }
 
-vec4 bilinear(BoundTexture t, vec2 uv, int level) {
+vec4 bilinear(BoundTexture t, vec2 uv, int level, bool nearest) {
     ivec2 size = level_size(t.pyramid, level);
-    Between x = between(t.wrap_s, uv.x, size.x), y = between(t.wrap_t, uv.y, size.y);
+    Between x = between(t.wrap_s, uv.x, size.x, nearest), y = between(t.wrap_t, uv.y, size.y, nearest);
     int first = pyramids[t.pyramid].first[level], upper = first + y.first * size.x, lower = first + y.second * size.x;
     vec4 a = decode(t.pyramid, upper + x.first), b = decode(t.pyramid, upper + x.second);
     vec4 c = decode(t.pyramid, lower + x.first), d = decode(t.pyramid, lower + x.second);
@@ -62,20 +62,17 @@ vec4 bilinear(BoundTexture t, vec2 uv, int level) {
     return above + (below - above) * y.share;
 }
 
-vec4 nearest_texel(BoundTexture t, vec2 uv) {
-    ivec2 size = level_size(t.pyramid, 0);
-    int x = wrapped(t.wrap_s, int(floor(reduced(t.wrap_s, uv.x) * float(size.x))), size.x);
-    int y = wrapped(t.wrap_t, int(floor(reduced(t.wrap_t, uv.y) * float(size.y))), size.y);
-    return decode(t.pyramid, pyramids[t.pyramid].first[0] + y * size.x + x);
-}
-
-// Pyramid::sample()
+// Pyramid::sample(). One bilinear() for both levels: compilers copy functions to where they are called, and some take
+// minutes for what comes out.
 vec4 sample_pyramid(BoundTexture t, vec2 uv, float level) {
-    if (!(level > 0.0) || (t.nearest != 0 && t.mipmapped == 0))
-        return t.nearest != 0 ? nearest_texel(t, uv) : bilinear(t, uv, 0);
-    int coarsest = pyramids[t.pyramid].level_count - 1;
-    if (level >= float(coarsest)) return bilinear(t, uv, coarsest);
-    int fine = int(level);
-    vec4 a = bilinear(t, uv, fine), b = bilinear(t, uv, fine + 1);
-    return a + (b - a) * (level - float(fine));
+    bool finest = !(level > 0.0) || (t.nearest != 0 && t.mipmapped == 0);
+    int coarsest = pyramids[t.pyramid].level_count - 1, fine = finest ? 0 : int(min(level, float(coarsest)));
+    float share = finest || fine == coarsest ? 0.0 : level - float(fine);
+    int last = share > 0.0 ? fine + 1 : fine;
+    vec4 color = vec4(0.0);
+    for (int i = fine; i <= last; ++i) {
+        vec4 here = bilinear(t, uv, i, finest && t.nearest != 0);
+        color = i == fine ? here : color + (here - color) * share;
+    }
+    return color;
 }

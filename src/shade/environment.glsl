@@ -41,5 +41,12 @@ vec3 environment_matte(vec3 d) {
 vec3 environment_shiny(vec3 direction, float roughness) {
     float level = clamp(roughness, 0.0, 1.0) * float(kSkyLevels - 1);
     int fine = min(int(level), kSkyLevels - 2);
-    return mix(sky_level(fine, direction), sky_level(fine + 1, direction), level - float(fine));
+    float share = level - float(fine);
+    vec3 color = vec3(0.0);
+    int last = share > 0.0 ? fine + 1 : fine;
+    for (int i = fine; i <= last; ++i) {
+        vec3 here = sky_level(i, direction);
+        color = i == fine ? here : mix(color, here, share);
+    }
+    return color;
 }

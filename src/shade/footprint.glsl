@@ -22,19 +22,22 @@ vec4 sample_texture(BoundTexture t, vec2 uv, vec3 footprint) {
     float yy = c * c * footprint.x + 2.0 * c * d * footprint.y + d * d * footprint.z;
     float xy = a * c * footprint.x + (a * d + b * c) * footprint.y + b * d * footprint.z;
     float mean = 0.5 * (xx + yy), slant = 0.5 * (xx - yy), spread = sqrt(slant * slant + xy * xy);
-    if (isinf(mean + spread) || isnan(mean + spread)) return sample_pyramid(t, place, 0.0);
+    bool known = !isinf(mean + spread) && !isnan(mean + spread);
 
     float major = box_width(mean + spread);
     float minor = max(max(box_width(mean - spread), major / kMostTaps), 1.0);
     major = max(major, minor);
-    float level = log2(minor);
-    int taps = int(min(kMostTaps, ceil(major / minor - 0.25)));
-    if (taps <= 1) return sample_pyramid(t, place, level);
+    float level = known ? log2(minor) : 0.0;
+    int taps = known ? int(min(kMostTaps, ceil(major / minor - 0.25))) : 1;
 
     vec2 axis = slant >= 0.0 ? vec2(slant + spread, xy) : vec2(xy, spread - slant);
     float len = sqrt(axis.x * axis.x + axis.y * axis.y);
-    if (!(len > 0.0)) return sample_pyramid(t, place, level);
-    axis *= major / (len * float(taps));
+    if (taps <= 1 || !(len > 0.0)) {
+        taps = 1;
+        axis = vec2(0.0);
+    } else {
+        axis *= major / (len * float(taps));
+    }
     vec2 way = axis / vec2(width, height);
     vec4 sum = vec4(0.0);
     for (int i = 0; i < taps; ++i) sum += sample_pyramid(t, place + way * (float(i) - 0.5 * float(taps - 1)), level);

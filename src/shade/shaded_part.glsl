@@ -3,19 +3,19 @@
 
 #include "bound/local_triangle.glsl"
 
+// -1: none.
 struct ShadedPart {
     int material;
-    int positions, normals, tangents;  // first of their numbers in `attributes`; tangents -1: none
-    int texcoords[2], colors;          // -1: none
+    int positions, normals, tangents, texcoords, colors;  // the first of them in `attributes`
     uint first_point, first_triangle, vertex_count;
-    int segments, moves;
+    int segments, moves, coordinate_sets;
 };
 
 layout(std430, binding = 2) restrict readonly buffer Parts { ShadedPart parts[]; };
 layout(binding = 0) uniform samplerBuffer points;   // x, y, w, c of each vertex at each knot of its part
 layout(binding = 1) uniform usamplerBuffer corners;
 layout(binding = 3) uniform usamplerBuffer part_of;
-layout(binding = 5) uniform samplerBuffer attributes;
+layout(binding = 5) uniform samplerBuffer attributes;  // four numbers of each vertex; of coordinates both sets
 layout(binding = 6) uniform usamplerBuffer source_vertices;  // of cut triangles: the corners of what they are cut from
 layout(binding = 7) uniform samplerBuffer pieces;            // of cut triangles: Piece::corner
 
@@ -52,25 +52,17 @@ vec3 in_source(uint triangle, vec3 b) {
     return vec3(1.0 - p.x - p.y, p.x, p.y);
 }
 
-vec2 attribute2(int first, uint vertex) {
-    int at = first + 2 * int(vertex);
-    return vec2(texelFetch(attributes, at).r, texelFetch(attributes, at + 1).r);
+// Of the three corners.
+struct Corner3 {
+    vec4 at[3];
+};
+
+Corner3 attributes_of(int first, uvec3 v) {
+    Corner3 out_of;
+    for (int k = 0; k < 3; ++k) out_of.at[k] = texelFetch(attributes, first + int(v[k]));
+    return out_of;
 }
-vec3 attribute3(int first, uint vertex) {
-    int at = first + 3 * int(vertex);
-    return vec3(texelFetch(attributes, at).r, texelFetch(attributes, at + 1).r, texelFetch(attributes, at + 2).r);
-}
-vec4 attribute4(int first, uint vertex) {
-    int at = first + 4 * int(vertex);
-    return vec4(texelFetch(attributes, at).r, texelFetch(attributes, at + 1).r, texelFetch(attributes, at + 2).r,
-                texelFetch(attributes, at + 3).r);
-}
-vec2 interpolate2(int first, uvec3 v, vec3 b) {
-    return b.x * attribute2(first, v.x) + b.y * attribute2(first, v.y) + b.z * attribute2(first, v.z);
-}
-vec3 interpolate3(int first, uvec3 v, vec3 b) {
-    return b.x * attribute3(first, v.x) + b.y * attribute3(first, v.y) + b.z * attribute3(first, v.z);
-}
-vec4 interpolate4(int first, uvec3 v, vec3 b) {
-    return b.x * attribute4(first, v.x) + b.y * attribute4(first, v.y) + b.z * attribute4(first, v.z);
+
+vec4 interpolate(Corner3 corners, vec3 b) {
+    return b.x * corners.at[0] + b.y * corners.at[1] + b.z * corners.at[2];
 }

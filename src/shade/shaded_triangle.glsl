@@ -22,7 +22,7 @@ struct BoundMaterial {
     vec4 sheen_color;     // w: sheen roughness
     float metallic, roughness, normal_scale, ior;
     float coat, coat_roughness, coat_normal_scale, transmission;
-    int unlit, textured, layered, reflects;  // reflects: otherwise than a dielectric of index 1.5
+    int unlit, textures_used, layered, reflects;  // reflects: otherwise than a dielectric of index 1.5
     BoundTexture textures[kTextures];
 };
 
@@ -38,6 +38,7 @@ struct ShadedTriangle {
     ShadedPart part;
     uint triangle;
     uvec3 vertices;
+    Corner3 positions, normals;
     vec3 face_normal;  // unit, towards the front
 };
 
@@ -71,8 +72,9 @@ ShadedTriangle shaded_triangle(uint triangle) {
     t.part = parts[texelFetch(part_of, int(triangle)).r];
     t.triangle = triangle;
     t.vertices = vertices_of(t.part, triangle);
-    vec3 a = attribute3(t.part.positions, t.vertices.x), b = attribute3(t.part.positions, t.vertices.y),
-         c = attribute3(t.part.positions, t.vertices.z);
+    t.positions = attributes_of(t.part.positions, t.vertices);
+    t.normals = attributes_of(t.part.normals, t.vertices);
+    vec3 a = t.positions.at[0].xyz, b = t.positions.at[1].xyz, c = t.positions.at[2].xyz;
     t.face_normal = normalized_or(cross(b - a, c - a), vec3(0.0));
     return t;
 }
@@ -85,13 +87,15 @@ Projection project(ShadedPart part, uint triangle) {
     Projection p;
     int segment = part.segments / 2;  // the one that holds t = 1/2
     double s = 0.5lf * double(part.segments) - double(segment);
-    MovingTriangle middle = moving_triangle(part, triangle, segment);
-    MovingTriangle first = segment == 0 ? middle : moving_triangle(part, triangle, 0);
-    MovingTriangle last = part.segments == 1 ? middle : moving_triangle(part, triangle, part.segments - 1);
-    for (int i = 0; i < 3; ++i) {
-        p.corner[i] = between_ends(middle.q[i], middle.r[i], s);
-        p.coc[i] = double(middle.q[i].w) + (double(middle.r[i].w) - double(middle.q[i].w)) * s;
-        p.motion[i] = dvec3(last.r[i].xyz) - dvec3(first.q[i].xyz);
+    int from = part.segments == 1 ? 0 : -1;  // of the first, that one, the last
+    for (int which = from; which <= -from; ++which) {
+        MovingTriangle m = moving_triangle(part, triangle, which < 0 ? 0 : which > 0 ? part.segments - 1 : segment);
+        for (int i = 0; i < 3; ++i) {
+            if (which == 0) p.corner[i] = between_ends(m.q[i], m.r[i], s);
+            if (which == 0) p.coc[i] = double(m.q[i].w) + (double(m.r[i].w) - double(m.q[i].w)) * s;
+            if (which == from) p.motion[i] = -dvec3(m.q[i].xyz);
+            if (which == -from) p.motion[i] += dvec3(m.r[i].xyz);
+        }
     }
     dvec3 row0 = cross(p.corner[1], p.corner[2]), row1 = cross(p.corner[2], p.corner[0]),
           row2 = cross(p.corner[0], p.corner[1]);
@@ -105,17 +109,13 @@ Projection project(ShadedPart part, uint triangle) {
 
 // One evaluation is filtered over its pixel (variance 1/12 each way) and over the shutter (1/12) and the lens disk (1/4
 // each way).
-vec3 texture_footprint(ShadedTriangle t, Projection p, vec3 barycentrics, int set) {
+vec3 texture_footprint(ShadedTriangle t, Projection p, vec3 barycentrics, vec2 corner_uv[3]) {
     dvec3 b = dvec3(barycentrics);
     dvec3 point = b.x * p.corner[0] + b.y * p.corner[1] + b.z * p.corner[2];
     if (!(point.z > 0.0lf) || texture_filter == kFilterOff) return vec3(0.0);
     dvec3 dx = point.z * (p.by_x - b * (p.by_x.x + p.by_x.y + p.by_x.z));
     dvec3 dy = point.z * (p.by_y - b * (p.by_y.x + p.by_y.y + p.by_y.z));
-    dvec2 uv[3];
-    for (int k = 0; k < 3; ++k)
-        uv[k] = dvec2(with_pieces ? interpolate2(t.part.texcoords[set], t.vertices,
-                                                 in_source(t.triangle, vec3(k == 0, k == 1, k == 2)))
-                                  : attribute2(t.part.texcoords[set], t.vertices[k]));
+    dvec2 uv[3] = dvec2[3](dvec2(corner_uv[0]), dvec2(corner_uv[1]), dvec2(corner_uv[2]));
     dvec2 edge1 = uv[1] - uv[0], edge2 = uv[2] - uv[0];
     vec2 by_x = vec2(dx.y * edge1 + dx.z * edge2), by_y = vec2(dy.y * edge1 + dy.z * edge2);
 
@@ -133,9 +133,7 @@ vec3 smooth_offset(ShadedTriangle t, vec3 b, vec3 normal, bool front) {
     float height = 0.0;
     for (int i = 0; i < 3; ++i) {
         int next = (i + 1) % 3;
-        uint from = t.vertices[i], to = t.vertices[next];
-        float turn = dot(attribute3(t.part.normals, to) - attribute3(t.part.normals, from),
-                         attribute3(t.part.positions, to) - attribute3(t.part.positions, from));
+        float turn = dot(t.normals.at[next].xyz - t.normals.at[i].xyz, t.positions.at[next].xyz - t.positions.at[i].xyz);
         height += b[i] * b[next] * max(0.0, front ? turn : -turn);
     }
     return height * normal;
@@ -146,8 +144,8 @@ vec3 decoded_normal(vec4 texel, float scale) {
 }
 
 vec3 mapped_normal(ShadedTriangle t, vec3 b, vec3 map) {
-    vec3 normal = interpolate3(t.part.normals, t.vertices, b);
-    vec4 tangent = interpolate4(t.part.tangents, t.vertices, b);
+    vec3 normal = interpolate(t.normals, b).xyz;
+    vec4 tangent = interpolate(attributes_of(t.part.tangents, t.vertices), b);
     return map.x * tangent.xyz + map.y * (cross(normal, tangent.xyz) * tangent.w) + map.z * normal;
 }
 
@@ -200,36 +198,60 @@ vec3 mirrored(vec3 n, vec3 to_eye) {
 }
 
 vec3 surface_ambient(Surface s) {
-    vec3 color = s.brdf.diffuse_albedo * lighting_matte(s.normal) +
-                 s.brdf.specular_albedo * lighting_shiny(mirrored(s.normal, s.to_eye), s.roughness);
-    color *= s.below;
-    if (s.has_sheen) color += s.sheen_scale * s.sheen.albedo * lighting_matte(s.normal);
-    if (s.has_coat) color += s.coat.albedo * lighting_shiny(mirrored(s.coat_normal, s.to_eye), s.coat_roughness);
+    vec3 matte = lighting_matte(s.normal), color = vec3(0.0);
+    int layers = s.has_coat ? 2 : 1;
+    for (int layer = 0; layer < layers; ++layer) {
+        vec3 shiny = lighting_shiny(mirrored(layer == 0 ? s.normal : s.coat_normal, s.to_eye),
+                                    layer == 0 ? s.roughness : s.coat_roughness);
+        if (layer > 0) {
+            color += s.coat.albedo * shiny;
+            continue;
+        }
+        color = (s.brdf.diffuse_albedo * matte + s.brdf.specular_albedo * shiny) * s.below;
+        if (s.has_sheen) color += s.sheen_scale * s.sheen.albedo * matte;
+    }
     return color;
 }
 
-// Of the point that is shaded, for look-ups.
-vec2 texture_uv[2];
-vec3 texture_footprints[2];
+// What the material's textures show of the point that is shaded; white without one.
+vec4 looked_up[kTextures];
 
-vec4 look_up(int material, int which) {
-    BoundTexture t = materials[material].textures[which];
-    if (t.pyramid < 0) return vec4(1.0);
-    return sample_texture(t, texture_uv[t.set], texture_footprints[t.set]);
+vec4 look_up(int which) {
+    return looked_up[which];
 }
 bool has_texture(int material, int which) {
     return materials[material].textures[which].pyramid >= 0;
 }
 
-void prepare_textures(ShadedTriangle t, vec3 barycentrics, vec3 b) {
-    texture_uv[0] = texture_uv[1] = vec2(0.0);
-    texture_footprints[0] = texture_footprints[1] = vec3(0.0);
-    if (materials[t.part.material].textured == 0) return;
-    Projection p = project(t.part, t.triangle);
-    for (int set = 0; set < 2; ++set) {
-        if (t.part.texcoords[set] < 0) continue;
-        texture_uv[set] = interpolate2(t.part.texcoords[set], t.vertices, b);
-        texture_footprints[set] = texture_footprint(t, p, barycentrics, set);
+// Coordinates at the corner, of both sets; of a piece, in what it is cut from.
+vec4 coordinates_at(ShadedTriangle t, Corner3 coordinates, int k) {
+    if (!with_pieces) return coordinates.at[k];
+    return interpolate(coordinates, in_source(t.triangle, vec3(k == 0, k == 1, k == 2)));
+}
+
+void look_up_textures(ShadedTriangle t, vec3 barycentrics, vec3 b) {
+    for (int i = 0; i < kTextures; ++i) looked_up[i] = vec4(1.0);
+    int used = materials[t.part.material].textures_used;  // the last one, and 1; 0 without textures
+    if (used == 0) return;
+    vec2 uv[2] = vec2[2](vec2(0.0), vec2(0.0));
+    vec3 footprints[2] = vec3[2](vec3(0.0), vec3(0.0));
+    if (t.part.texcoords >= 0) {
+        Projection p = project(t.part, t.triangle);
+        Corner3 coordinates = attributes_of(t.part.texcoords, t.vertices);
+        vec4 here = interpolate(coordinates, b), corner[3];
+        for (int k = 0; k < 3; ++k) corner[k] = coordinates_at(t, coordinates, k);
+        for (int set = 0; set < 2; ++set) {
+            if ((t.part.coordinate_sets >> set & 1) == 0) continue;
+            bool first = set == 0;
+            uv[set] = first ? here.xy : here.zw;
+            footprints[set] = texture_footprint(t, p, barycentrics,
+                                                vec2[3](first ? corner[0].xy : corner[0].zw, first ? corner[1].xy : corner[1].zw,
+                                                        first ? corner[2].xy : corner[2].zw));
+        }
+    }
+    for (int i = 0; i < used; ++i) {
+        BoundTexture texture = materials[t.part.material].textures[i];
+        if (texture.pyramid >= 0) looked_up[i] = sample_texture(texture, uv[texture.set], footprints[texture.set]);
     }
 }
 
@@ -278,33 +300,40 @@ void shade_point(uint index, uint first_share) {
     ShadedTriangle t = shaded_triangle(shade_points[index].triangle);
     int m = t.part.material;
     vec3 b = in_source(t.triangle, barycentrics);
-    prepare_textures(t, barycentrics, b);
+    look_up_textures(t, barycentrics, b);
 
-    vec3 base = materials[m].base_color.rgb * look_up(m, kBaseColor).rgb;
-    if (t.part.colors >= 0) base *= interpolate4(t.part.colors, t.vertices, b).rgb;
+    vec3 base = materials[m].base_color.rgb * look_up(kBaseColor).rgb;
+    if (t.part.colors >= 0) base *= interpolate(attributes_of(t.part.colors, t.vertices), b).rgb;
     if (materials[m].unlit != 0) {
         shade_points[index].rest = vec4(base, 1.0);
         shade_points[index].position = vec4(0.0);
         return;
     }
 
-    vec4 metallic_roughness = look_up(m, kMetallicRoughness);
+    vec4 metallic_roughness = look_up(kMetallicRoughness);
     float metallic = materials[m].metallic * metallic_roughness.z;
     float roughness = materials[m].roughness * metallic_roughness.y;
-    vec3 position = interpolate3(t.part.positions, t.vertices, b);
+    vec3 position = interpolate(t.positions, b).xyz;
     vec3 to_eye = eye_direction(position), face = front ? t.face_normal : -t.face_normal;
-    bool has_tangents = t.part.tangents >= 0;
-    vec3 even = seen_normal(interpolate3(t.part.normals, t.vertices, b), front, face, to_eye);  // without a map
-    vec3 normal = even;
-    if (has_texture(m, kNormal) && has_tangents)
-        normal = seen_normal(mapped_normal(t, b, decoded_normal(look_up(m, kNormal), materials[m].normal_scale)), front,
-                             face, to_eye);
+    float coat = materials[m].layered != 0 ? materials[m].coat * look_up(kCoat).x : 0.0;
+    // Without a map, with it, and of the coat.
+    vec3 normals[3];
+    int normals_used = coat > 0.0 ? 3 : 2;
+    for (int k = 0; k < normals_used; ++k) {
+        vec3 n = interpolate(t.normals, b).xyz;
+        int map = k == 1 ? kNormal : kCoatNormal;
+        if (k > 0 && t.part.tangents >= 0 && has_texture(m, map))
+            n = mapped_normal(t, b, decoded_normal(look_up(map), k == 1 ? materials[m].normal_scale
+                                                                        : materials[m].coat_normal_scale));
+        normals[k] = seen_normal(n, front, face, to_eye);
+    }
+    vec3 even = normals[0], normal = normals[1];
 
     vec4 reflection = vec4(kDielectricF0, kDielectricF0, kDielectricF0, 1.0);
     if (materials[m].reflects != 0)
-        reflection = dielectric_reflection(materials[m].ior, materials[m].specular_color.w * look_up(m, kSpecular).w,
-                                           materials[m].specular_color.rgb * look_up(m, kSpecularColor).rgb);
-    float transmission = materials[m].transmission > 0.0 ? materials[m].transmission * look_up(m, kTransmission).x : 0.0;
+        reflection = dielectric_reflection(materials[m].ior, materials[m].specular_color.w * look_up(kSpecular).w,
+                                           materials[m].specular_color.rgb * look_up(kSpecularColor).rgb);
+    float transmission = materials[m].transmission > 0.0 ? materials[m].transmission * look_up(kTransmission).x : 0.0;
     Surface surface;
     surface.brdf = make_brdf(base, metallic, roughness, dot(normal, to_eye), reflection);
     surface.brdf.diffuse_albedo *= 1.0 - transmission * (1.0 - metallic);
@@ -314,22 +343,14 @@ void shade_point(uint index, uint first_share) {
     surface.has_coat = surface.has_sheen = false;
     surface.below = surface.sheen_scale = 1.0;
     if (materials[m].layered != 0) {
-        float coat = materials[m].coat * look_up(m, kCoat).x;
-        if (coat > 0.0) {
-            vec3 coat_normal = even;
-            if (has_texture(m, kCoatNormal) && has_tangents)
-                coat_normal = seen_normal(
-                    mapped_normal(t, b, decoded_normal(look_up(m, kCoatNormal), materials[m].coat_normal_scale)), front,
-                    face, to_eye);
-            add_coat(surface, coat, materials[m].coat_roughness * look_up(m, kCoatRoughness).y, coat_normal);
-        }
-        vec3 sheen = materials[m].sheen_color.rgb * look_up(m, kSheenColor).rgb;
-        if (sheen != vec3(0.0)) add_sheen(surface, sheen, materials[m].sheen_color.w * look_up(m, kSheenRoughness).w);
+        if (coat > 0.0) add_coat(surface, coat, materials[m].coat_roughness * look_up(kCoatRoughness).y, normals[2]);
+        vec3 sheen = materials[m].sheen_color.rgb * look_up(kSheenColor).rgb;
+        if (sheen != vec3(0.0)) add_sheen(surface, sheen, materials[m].sheen_color.w * look_up(kSheenRoughness).w);
     }
     // The samples that see through say nothing of what the surface reflects: the others speak for them.
     float scale = 1.0 / (1.0 - 0.875 * transmission);
 
-    vec3 color = surface.below * materials[m].emissive.rgb * look_up(m, kEmissive).rgb;
+    vec3 color = surface.below * materials[m].emissive.rgb * look_up(kEmissive).rgb;
     for (int i = 0; i < light_count; ++i) {
         PosedLight light = lights[i];
         Incoming from = incoming(light, position);
@@ -349,7 +370,7 @@ void shade_point(uint index, uint first_share) {
     }
     if (with_ambient) {
         vec3 ambient = surface_ambient(surface);
-        if (has_texture(m, kOcclusion)) ambient *= 1.0 + materials[m].emissive.w * (look_up(m, kOcclusion).x - 1.0);
+        if (has_texture(m, kOcclusion)) ambient *= 1.0 + materials[m].emissive.w * (look_up(kOcclusion).x - 1.0);
         color += ambient;
     }
     shade_points[index].rest = vec4(without_negligible(scale * color, first_share), 1.0);

@@ -41,9 +41,7 @@ Corners corners_at_knot(int knot) {
     Corners made;
     for (int k = 0; k < 3; ++k) {
         int corner = int(texelFetch(world_corners, int(3u * receiver.triangle) + k).r + uint(knot) * receiver.part.vertex_count);
-        vec3 point = vec3(texelFetch(world_points, 3 * corner).r, texelFetch(world_points, 3 * corner + 1).r,
-                          texelFetch(world_points, 3 * corner + 2).r);
-        precise dvec3 p = dvec3(point) - receiver.face.position.xyz;
+        precise dvec3 p = dvec3(texelFetch(world_points, corner).xyz) - receiver.face.position.xyz;
         dvec3 x = receiver.face.right.xyz, y = receiver.face.up.xyz, z = receiver.face.forward.xyz;
         precise double along_x = p.x * x.x + p.y * x.y + p.z * x.z;
         precise double along_y = p.x * y.x + p.y * y.y + p.z * y.z;
@@ -53,16 +51,31 @@ Corners corners_at_knot(int knot) {
     return made;
 }
 
-Corners corners_at_border(int border) {
-    precise float along = float(border * receiver.part.segments) / float(kQuarters);
-    int segment = min(int(along), receiver.part.segments - 1);
-    precise float s = along - float(segment);
-    Corners now = corners_at_knot(segment), next = corners_at_knot(segment + 1), made;
-    for (int k = 0; k < 3; ++k) {
-        precise vec3 between = now.at[k] + s * (next.at[k] - now.at[k]);
-        made.at[k] = between;
+// A share of the way from one knot to the next.
+Corners corners_between(int segment, float s) {
+    Corners made;
+    for (int end = 0; end <= receiver.part.moves; ++end) {
+        Corners here = corners_at_knot(segment + end);
+        for (int k = 0; k < 3; ++k) {
+            precise vec3 between = end == 0 ? here.at[k] : made.at[k] + s * (here.at[k] - made.at[k]);
+            made.at[k] = between;
+        }
     }
     return made;
+}
+
+// Corners at the borders of a quarter; of a straight path, of the shutter.
+void corners_of_quarter(int quarter, out Corners begin, out Corners end) {
+    int last = receiver.path == kStill ? 0 : 1;
+    for (int border = 0; border <= last; ++border) {
+        precise float along = float((quarter + border) * receiver.part.segments) / float(kQuarters);
+        if (receiver.path != kInPieces) along = float(border);
+        int segment = min(int(along), receiver.part.segments - 1);
+        precise float s = along - float(segment);
+        Corners here = corners_between(segment, s);
+        if (border == 0) begin = here;
+        if (border == last) end = here;
+    }
 }
 
 vec3 lane_barycentrics(int lane) {
@@ -83,15 +96,13 @@ vec3 blend(vec3 b, Corners corners) {
 bool find_ways(out float reach, out float depth) {
     reach = depth = 0.0;
     Corners begin_corners, end_corners;
-    if (receiver.path != kInPieces) begin_corners = corners_at_knot(0);
-    if (receiver.path == kStraight) end_corners = corners_at_knot(1);
+    bool known = false;
     for (int lane = 0; lane < kShadowLanes; ++lane) {
         if (!is_asked(lane)) continue;
         int q = lane / kLookups;
-        if (receiver.path == kInPieces && lane % kLookups == 0) {
-            begin_corners = corners_at_border(q);
-            end_corners = corners_at_border(q + 1);
-        }
+        if (lane == 0 || (receiver.path == kInPieces && lane % kLookups == 0) || !known)
+            corners_of_quarter(q, begin_corners, end_corners);
+        known = true;
         vec3 b = lane_barycentrics(lane), begin = blend(b, begin_corners), end = begin;
         if (receiver.path == kInPieces) end = blend(b, end_corners);
         if (receiver.path == kStraight) {
@@ -167,14 +178,9 @@ bool is_lit(vec3 b, vec2 seen_at, float t, float occluder, Corners still) {
     Corners now = still;
     if (receiver.path != kStill) {
         precise float along = t * float(receiver.part.segments);
-        int segment = receiver.path == kInPieces ? min(int(along), receiver.part.segments - 1) : 0;
-        precise float s = receiver.path == kInPieces ? along - float(segment) : t;
-        if (receiver.path == kInPieces) now = corners_at_knot(segment);
-        Corners next = corners_at_knot(segment + 1);
-        for (int k = 0; k < 3; ++k) {
-            precise vec3 v = now.at[k] + s * (next.at[k] - now.at[k]);
-            now.at[k] = v;
-        }
+        int segment = min(int(along), receiver.part.segments - 1);
+        precise float s = along - float(segment);
+        now = corners_between(segment, s);
     }
     precise vec3 X, Y, z;
     for (int k = 0; k < 3; ++k) {

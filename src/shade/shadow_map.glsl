@@ -65,8 +65,7 @@ int samples_cell(int cell) {
 }
 
 vec3 map_sample(int cell, int index) {
-    int at = 3 * (samples_cell(cell) * kSamplesPerCell + index);
-    return vec3(texelFetch(map_samples, at).r, texelFetch(map_samples, at + 1).r, texelFetch(map_samples, at + 2).r);
+    return texelFetch(map_samples, samples_cell(cell) * kSamplesPerCell + index).xyz;
 }
 
 int exponent_in(float x) {  // std::ilogb of what is above 0
