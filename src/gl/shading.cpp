@@ -37,10 +37,11 @@ Shading::Shading(Device& device, const ShadingScene& scene, const SampleTable& t
       upload_(device, scene),
       cells_(device, upload_.maps()) {
     const std::size_t of_block = static_cast<std::size_t>(table.slots()) * kLanes;
-    most_blocks_ = std::max<std::size_t>(1, kMostSamples / of_block);
+    const std::size_t fit = static_cast<std::size_t>(device.most_block_bytes()) / kLaneBytes;  // the largest buffer
+    most_blocks_ = std::max<std::size_t>(1, std::min(kMostSamples, fit) / of_block);
     const std::size_t samples = most_blocks_ * of_block;  // and as many points at most
     const std::size_t casting = static_cast<std::size_t>(upload_.casting_lights());
-    most_points_ = std::min(samples, kMostShares / std::max<std::size_t>(1, casting));
+    most_points_ = std::max<std::size_t>(1, std::min(samples, kMostShares / std::max<std::size_t>(1, casting)));
     check_room(static_cast<std::int64_t>(samples * kLaneBytes), device.most_block_bytes(), "a pixel's samples");
     samples_ = Buffer(samples * sizeof(glm::uvec4));
     seen_ = Buffer(samples * sizeof(std::uint32_t));
