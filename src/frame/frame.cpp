@@ -1,137 +1,19 @@
 #include "frame/frame.h"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
-#include <mutex>
 
 #include "base/parallel.h"
 #include "frame/cut_triangles.h"
+#include "frame/moments.h"
+#include "frame/vertex_paths.h"
 
 namespace pentaprism {
 namespace {
 
-constexpr double kMaxError = 0.1;  // pixels between the true path and its straight segments
-constexpr int kMaxSegments = 64;
-
-// The scene and the camera at one shutter time.
-struct Moment {
-    Pose pose;
-    glm::dmat4 to_camera;
-    View view;
-};
-
-// Moments by shutter time, made when first asked for. Times are multiples of 1/128, exact in double.
-class Moments {
-  public:
-    Moments(const Scene& scene, const View& view, std::span<const Index> animations)
-        : scene_(scene), view_(view), animations_(animations) {}
-
-    const Moment& at(double t) {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        auto& moment = moments_[t];
-        if (!moment) {
-            moment = std::make_unique<Moment>();
-            moment->pose = evaluate(scene_, animations_, view_.shutter.at(t));
-            moment->to_camera = world_to_camera(view_, moment->pose);
-            moment->view = view_at(scene_, view_, moment->pose);
-        }
-        return *moment;
-    }
-
-  private:
-    const Scene& scene_;
-    const View& view_;
-    std::span<const Index> animations_;
-    std::mutex mutex_;
-    std::map<double, std::unique_ptr<Moment>> moments_;
-};
-
-// One vertex.
-struct ClipPoint {
-    glm::dvec4 p;  // x, y, w, z
-    double c;
-    bool operator==(const ClipPoint&) const = default;
-};
-using ClipPoints = std::vector<ClipPoint>;
-
-ClipPoints clip_points(const Scene& scene, const Placement& placement, const Moment& moment) {
-    std::vector<glm::dvec3> positions(scene.meshes[placement.mesh].primitives[placement.primitive].positions.size());
-    pose_positions(scene, moment.pose, placement, positions);
-    ClipPoints points(positions.size());
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-        const glm::dvec4 p = to_raster_clip(moment.view, glm::dvec3(moment.to_camera * glm::dvec4(positions[i], 1.0)));
-        points[i] = {p, moment.view.coc(p.x, p.y, p.w)};
-    }
-    return points;
-}
-
-// Largest distance in pixels between `truth` and the point at fraction s of the straight segment from p to q, over the
-// vertices that are in front of the camera and not far outside the picture. Where circles of confusion do not follow
-// from depth alone, also between their radii.
-double path_error(const View& view, const ClipPoints& p, const ClipPoints& q, const ClipPoints& truth, double s) {
-    const double reach = 2.0 * std::max(view.width, view.height), near = view.w_near();
-    const bool blur_bends = !view.has_straight_sight();
-    double worst = 0.0;
-    for (std::size_t i = 0; i < truth.size(); ++i) {
-        const glm::dvec4 &true_p = truth[i].p, straight = p[i].p + s * (q[i].p - p[i].p);
-        if (!(true_p.z >= near && straight.z >= near)) continue;
-        const double x = true_p.x / true_p.z, y = true_p.y / true_p.z;
-        if (!(std::abs(x) < reach && std::abs(y) < reach)) continue;
-        const double dx = straight.x / straight.z - x, dy = straight.y / straight.z - y;
-        worst = std::max(worst, dx * dx + dy * dy);
-        if (!blur_bends) continue;
-        const double dr = (p[i].c + s * (q[i].c - p[i].c)) / straight.z - truth[i].c / true_p.z;
-        worst = std::max(worst, dr * dr);
-    }
-    return std::sqrt(worst);
-}
-
-// A placement's points at the knots of its segments.
-class Path {
-  public:
-    Path(const Scene& scene, const View& view, const Placement& placement, Moments& moments)
-        : scene_(scene), view_(view), placement_(placement), moments_(moments) {}
-
-    const ClipPoints& at(double t) {
-        auto& points = points_[t];
-        if (points.empty()) points = clip_points(scene_, placement_, moments_.at(t));
-        return points;
-    }
-
-    bool stands_still() {
-        return at(0.0) == at(0.25) && at(0.0) == at(0.5) && at(0.0) == at(0.75) && at(0.0) == at(1.0);
-    }
-
-    // Errors are asked at the quarters of each segment: at the middle alone, an S-shaped path would look straight.
-    bool is_straight_with(int segments) {
-        for (int k = 0; k < segments; ++k)
-            for (const double s : {0.25, 0.5, 0.75}) {
-                const double t0 = double(k) / segments, t1 = double(k + 1) / segments;
-                if (path_error(view_, at(t0), at(t1), at((k + s) / segments), s) > kMaxError) return false;
-            }
-        return true;
-    }
-
-  private:
-    const Scene& scene_;
-    const View& view_;
-    Placement placement_;
-    Moments& moments_;
-    std::map<double, ClipPoints> points_;
-};
-
-int choose_segments(Path& path) {
-    int segments = 1;
-    while (segments < kMaxSegments && !path.is_straight_with(segments)) segments *= 2;
-    return segments;
-}
-
 // What one placement contributes before its place in the frame is known.
 struct PosedPart {
     Part part;
-    std::vector<glm::vec4> points;
-    std::vector<float> depths;
+    KnotVertices knots;
     CutTriangles cut;  // empty: all triangles are whole
 };
 
@@ -141,38 +23,26 @@ void mirror(Piece& piece) {
     for (glm::vec2& corner : piece.corner) std::swap(corner.x, corner.y);
 }
 
-void append_knot(const View& view, const ClipPoints& knot, PosedPart& posed) {
-    // All knots at once: growing copies.
-    const std::size_t all = knot.size() * (posed.part.moves ? posed.part.segments + 1 : 1);
-    posed.points.reserve(all);
-    if (!view.perspective) posed.depths.reserve(all);
-    for (const auto& [p, c] : knot) {
-        posed.points.emplace_back(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z),
-                                  static_cast<float>(c));
-        if (!view.perspective) posed.depths.push_back(static_cast<float>(p.w));
-    }
-}
-
 // Cuts the triangles of a part that is posed.
 void cut_part(const Primitive& primitive, Moments& moments, PosedPart& posed) {
     Part& part = posed.part;
     const std::size_t n = part.vertex_count, knots = part.moves ? part.segments + 1 : 1;
     std::vector<KnotPoints> cut(knots);
+    auto& [points, depths] = posed.knots;
     for (std::size_t k = 0; k < knots; ++k) {
         cut[k].view = moments.at(part.moves ? static_cast<double>(k) / part.segments : 0.0).view;
-        cut[k].points.assign(posed.points.begin() + k * n, posed.points.begin() + (k + 1) * n);
-        if (!posed.depths.empty())
-            cut[k].depths.assign(posed.depths.begin() + k * n, posed.depths.begin() + (k + 1) * n);
+        cut[k].points.assign(points.begin() + k * n, points.begin() + (k + 1) * n);
+        if (!depths.empty()) cut[k].depths.assign(depths.begin() + k * n, depths.begin() + (k + 1) * n);
     }
     posed.cut = cut_triangles(primitive.indices, cut);
     part.cut_points = std::move(posed.cut.cut_points);
     part.vertex_count = static_cast<std::uint32_t>(cut[0].points.size());
     part.triangle_count = static_cast<std::uint32_t>(posed.cut.pieces.size());
-    posed.points.clear();
-    posed.depths.clear();
+    points.clear();
+    depths.clear();
     for (const KnotPoints& knot : cut) {
-        posed.points.insert(posed.points.end(), knot.points.begin(), knot.points.end());
-        posed.depths.insert(posed.depths.end(), knot.depths.begin(), knot.depths.end());
+        points.insert(points.end(), knot.points.begin(), knot.points.end());
+        depths.insert(depths.end(), knot.depths.begin(), knot.depths.end());
     }
 }
 
@@ -192,11 +62,16 @@ PosedPart pose_part(const Scene& scene, const View& view, const Placement& place
     const bool glass = material.transmission > 0.0f && material.alpha_mode == AlphaMode::kOpaque;
     part.alpha_mode = glass ? AlphaMode::kBlend : material.alpha_mode;
 
-    Path path(scene, view, placement, moments);
-    part.moves = shutter_open && part.vertex_count > 0 && !path.stands_still();
-    if (part.moves) part.segments = settings.motion_segments > 0 ? settings.motion_segments : choose_segments(path);
-    for (int k = 0; k <= (part.moves ? part.segments : 0); ++k)
-        append_knot(view, path.at(double(k) / part.segments), posed);
+    if (part.vertex_count > 0) {
+        VertexPaths paths(scene, view, placement, moments);
+        part.moves = shutter_open && !paths.stand_still();
+        if (part.moves && settings.motion_segments == 0) {
+            part.segments = paths.straight_pieces(posed.knots);
+        } else {
+            if (part.moves) part.segments = settings.motion_segments;
+            paths.at_knots(part.moves ? part.segments : 0, posed.knots);
+        }
+    }
     if (!view.lens.pinhole() && !view.lens.straight()) cut_part(primitive, moments, posed);
     return posed;
 }
@@ -246,7 +121,7 @@ Frame pose_frame(const Scene& scene, const View& view, std::span<const Index> an
     for (PosedPart& p : posed) {
         p.part.first_point = static_cast<std::uint32_t>(points);
         p.part.first_triangle = static_cast<std::uint32_t>(triangles);
-        points += p.points.size();
+        points += p.knots.points.size();
         triangles += p.part.triangle_count;
     }
     frame.points.resize(points);
@@ -260,8 +135,9 @@ Frame pose_frame(const Scene& scene, const View& view, std::span<const Index> an
 
     parallel_for(posed.size(), [&](std::size_t i) {
         const Part& part = frame.parts[i];
-        std::copy(posed[i].points.begin(), posed[i].points.end(), frame.points.begin() + part.first_point);
-        std::copy(posed[i].depths.begin(), posed[i].depths.end(),
+        const auto& [part_points, part_depths] = posed[i].knots;
+        std::copy(part_points.begin(), part_points.end(), frame.points.begin() + part.first_point);
+        std::copy(part_depths.begin(), part_depths.end(),
                   frame.depths.begin() + (view.perspective ? 0 : part.first_point));
         const bool is_cut = !posed[i].cut.pieces.empty();
         const auto& indices = is_cut ? posed[i].cut.indices

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "scene/affine.h"
+
 namespace pentaprism {
 
 /// One primitive of one mesh, placed once. `instance` is an index into Node::instances, or kNone.
@@ -49,8 +51,35 @@ glm::dmat4 placement_matrix(const Scene& scene, const Pose& pose, const Placemen
 /// True when the placement turns counter-clockwise triangles clockwise (negative determinant).
 bool is_mirrored(const Scene& scene, const Pose& pose, const Placement& placement);
 
-/// World-space positions of all vertices of the placement: morph first, then skin or matrix. `out` has one entry for
-/// each vertex. A skinned mesh ignores its node's own transform (glTF 2.0, 3.7.3.3).
+/// How the vertices of a placement stand at the time of a pose: morph first, then skin or matrix. A skinned mesh
+/// ignores its node's own transform (glTF 2.0, 3.7.3.3). Refers to the scene and the pose.
+class PlacedVertices {
+  public:
+    PlacedVertices(const Scene& scene, const Pose& pose, const Placement& placement);
+
+    /// World-space positions of vertices [first, first + out.size()).
+    void positions(std::size_t first, std::span<glm::dvec3> out) const;
+    /// What the skin or the matrix does to a vertex.
+    Affine transform(std::size_t vertex) const {
+        if (joints_.empty()) return matrix_;
+        const auto width = static_cast<std::size_t>(primitive_->influences);
+        Affine sum;
+        for (std::size_t k = vertex * width; k < (vertex + 1) * width; ++k)
+            if (primitive_->weights[k] != 0.0f) sum.add(joints_[primitive_->joints[k]], primitive_->weights[k]);
+        return sum;
+    }
+    const Primitive& primitive() const { return *primitive_; }
+    /// Weights of the primitive's morph targets; may be fewer than there are targets.
+    std::span<const float> weights() const { return weights_; }
+
+  private:
+    const Primitive* primitive_;
+    std::span<const float> weights_;
+    std::vector<Affine> joints_;  // empty: all vertices follow matrix_
+    Affine matrix_;
+};
+
+/// World-space positions of all vertices of the placement; `out` has one entry for each.
 void pose_positions(const Scene& scene, const Pose& pose, const Placement& placement, std::span<glm::dvec3> out);
 
 /// World-space normals (unit length), by the inverse transpose of the same transforms; for a mirrored placement they
