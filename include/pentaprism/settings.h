@@ -138,7 +138,7 @@ enum class Sampler : std::uint8_t {
     kIndependent  ///< random, for comparison
 };
 
-/// What finds the visible surface of each sample; shading and film are the processor's in both cases.
+/// What finds the visible surface of each sample, and shades where MethodSettings::shading is pixel.
 enum class Backend {
     kCpu,
     kGl  ///< OpenGL 4.5, with the samples and the exact test of kCpu; Error(kBackend) without a driver or in a build

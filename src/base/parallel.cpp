@@ -65,4 +65,9 @@ void isolated(const std::function<void()>& body) {
     tbb::this_task_arena::isolate(body);
 }
 
+void end_threads() {
+    tbb::task_scheduler_handle handle{tbb::attach{}};
+    tbb::finalize(handle, std::nothrow);
+}
+
 }  // namespace pentaprism

@@ -23,4 +23,8 @@ void parallel_ranges(std::size_t n, std::size_t grain, const std::function<void(
 /// loop's body, body() may be called with a lock held.
 void isolated(const std::function<void()>& body);
 
+/// Waits until the threads of all loops have ended; a later loop starts new ones. For the end of the process, where
+/// libraries tidy up what such threads still hold. Not from within a loop.
+void end_threads();
+
 }  // namespace pentaprism

@@ -204,9 +204,10 @@ void add_method_options(CLI::App& command, MethodSettings& method) {
                                                       {"raytrace", VisibilityMethod::kRaytrace},
                                                       {"micropolygon", VisibilityMethod::kMicropolygon}});
               });
-    add_value(command, group, "--backend", "cpu|gl",
-              "What finds visible surfaces: the processor, or OpenGL 4.5 (default cpu)",
-              [&](const std::string& text) { method.backend = parse_backend(text); });
+    add_value(
+        command, group, "--backend", "cpu|gl",
+        "What finds visible surfaces, and with --shading pixel shades: the processor, or OpenGL 4.5 (default cpu)",
+        [&](const std::string& text) { method.backend = parse_backend(text); });
     add_value(command, group, "--gl-pipeline", "auto|geometry|compute",
               "How --backend gl does it: the papers' geometry shader, or tiles in compute shaders (default auto)",
               [&](const std::string& text) { method.gl_pipeline = parse_gl_pipeline(text); });

@@ -87,15 +87,33 @@ float opacity_threshold(std::uint32_t triangle, int px, int py, int sample_index
                     1.0f - 0x1p-24f);
 }
 
+namespace {
+
+void set_glass(const Frame& frame, const Material& material, const Primitive& primitive, const Corners& corners,
+               OpacityTerms& terms) {
+    terms.glass = true;
+    terms.blends = material.alpha_mode == AlphaMode::kBlend;
+    terms.transmission = material.transmission;
+    const TextureRef& ref = material.transmission_texture;
+    const Pyramid* pyramid = frame.textures ? frame.textures->data(ref) : nullptr;
+    const std::vector<glm::vec2>& uv = primitive.texcoords[ref.texcoord == 1 ? 1 : 0];
+    if (!pyramid || uv.empty()) return;
+    terms.transmission_texture = pyramid;
+    terms.transmission_ref = &ref;
+    for (int k = 0; k < 3; ++k) terms.transmission_uv[k] = corners.at(k, uv);
+}
+
+}  // namespace
+
 OpacityTerms opacity_terms(const Frame& frame, std::uint32_t triangle) {
     OpacityTerms terms;
     const Part& part = frame.parts[frame.part_of[triangle]];
     if (part.material == kNone) return terms;
     const Material& material = frame.scene->materials[part.material];
-    terms.glass = material.transmission > 0.0f;
-    if (part.alpha_mode == AlphaMode::kOpaque || terms.glass) return terms;
+    if (part.alpha_mode == AlphaMode::kOpaque) return terms;
     const Primitive& primitive = frame.scene->meshes[part.placement.mesh].primitives[part.placement.primitive];
     const Corners corners{frame, triangle, frame.vertices(triangle)};
+    if (material.transmission > 0.0f) set_glass(frame, material, primitive, corners, terms);
     terms.mode = part.alpha_mode;
     terms.cutoff = material.alpha_cutoff;
     terms.factor = material.base_color.w;

@@ -1,96 +1,103 @@
 // Twin of frame/opacity.h: alpha masks and stochastic transparency (Enderton, Sintorn, Shirley, Luebke 2010), with the
-// look-up of scene/texture.cpp. Of the part that is drawn; glass is not here (gl/opacity_upload.cpp refuses it).
+// look-up of scene/texture.cpp. Of the part that is drawn.
 
 #include "base/number.glsl"
+#include "sample/net.glsl"
+#include "scene/wrap.glsl"
 
 const int kOpaque = 0, kMask = 1, kBlend = 2;           // AlphaMode
 const int kMixedOpacity = 0, kSolid = 1, kClear = 2;            // OpacityClass
-const int kRepeat = 0, kMirroredRepeat = 1, kClamp = 2; // Wrap
 
 uniform int samples_per_pixel;
 uniform uint sample_seed;
 
+// One channel of a texture's finest level.
+struct OpacityTexture {
+    ivec2 size, wrap;
+    vec4 matrix;
+    vec2 offset;
+    int first_code;
+    bool nearest_texel, turned;
+};
+
 // Of a part: what of opacity_terms() is not a triangle's own.
 struct Surface {
     int alpha_mode;
-    bool corner_alphas, textured, nearest_texel, texture_turned;
-    int first_record;  // of the part's first triangle
-    int first_code;    // of its texture
-    float alpha_cutoff, alpha_factor, texture_alpha;
-    ivec2 texture_size, texture_wrap;
-    vec4 texture_matrix;
-    vec2 texture_offset;
+    bool corner_alphas, textured, glass, glass_textured, blends;
+    int first_record, stride;  // of the part's first triangle; of each triangle
+    float alpha_cutoff, alpha_factor, texture_alpha, transmission;
+    OpacityTexture texture, of_glass;
 };
 
-// Three for each triangle: uv of corners 0 and 1; of corner 2, class; alphas of the corners.
+// Three for each triangle: uv of corners 0 and 1; of corner 2, class; alphas of the corners. Two more of glass: uv of its
+// texture.
 layout(binding = 1) uniform samplerBuffer opacity_records;
 layout(binding = 2) uniform usamplerBuffer opacity_codes;
-layout(binding = 3) uniform usamplerBuffer surfaces;  // five for each part, as gl/opacity_upload.cpp writes them
+layout(binding = 3) uniform usamplerBuffer surfaces;  // eight for each part, as gl/opacity_upload.cpp writes them
+
+OpacityTexture opacity_texture(int at) {
+    uvec4 a = texelFetch(surfaces, at), c = texelFetch(surfaces, at + 2);
+    return OpacityTexture(ivec2(a.xy), ivec2(a.zw), uintBitsToFloat(texelFetch(surfaces, at + 1)), uintBitsToFloat(c.xy),
+                          int(c.z), (c.w & 1u) != 0u, (c.w & 2u) != 0u);
+}
 
 Surface surface_of(int part) {
-    uvec4 a = texelFetch(surfaces, 5 * part);
-    uvec4 b = texelFetch(surfaces, 5 * part + 1), c = texelFetch(surfaces, 5 * part + 2);
-    uvec4 d = texelFetch(surfaces, 5 * part + 3), e = texelFetch(surfaces, 5 * part + 4);
-    return Surface(int(a.x), (a.y & 1u) != 0u, (a.y & 2u) != 0u, (a.y & 4u) != 0u, (a.y & 8u) != 0u, int(a.z), int(a.w),
-                   uintBitsToFloat(b.x), uintBitsToFloat(b.y), uintBitsToFloat(b.z), ivec2(c.xy), ivec2(c.zw),
-                   uintBitsToFloat(d), uintBitsToFloat(e.xy));
+    uvec4 a = texelFetch(surfaces, 8 * part), b = texelFetch(surfaces, 8 * part + 1);
+    return Surface(int(a.x), (a.y & 1u) != 0u, (a.y & 2u) != 0u, (a.y & 4u) != 0u, (a.y & 8u) != 0u, (a.y & 16u) != 0u,
+                   int(a.z), int(a.w), uintBitsToFloat(b.x), uintBitsToFloat(b.y), uintBitsToFloat(b.z),
+                   uintBitsToFloat(b.w), opacity_texture(8 * part + 2), opacity_texture(8 * part + 5));
 }
 
 int opacity_class(Surface s, uint in_part) {
     return s.alpha_mode == kOpaque ? kSolid
-                                   : int(texelFetch(opacity_records, 3 * (s.first_record + int(in_part)) + 1).z);
+                                   : int(texelFetch(opacity_records, s.first_record + s.stride * int(in_part) + 1).z);
 }
 
-int wrapped(int wrap, int i, int n) {
-    if (wrap == kClamp) return clamp(i, 0, n - 1);
-    int period = wrap == kRepeat ? n : 2 * n;
-    i = (i + period) % period;  // i is at least -1
-    return i < n ? i : period - 1 - i;
+float code_at(OpacityTexture t, int x, int y) {
+    return float(texelFetch(opacity_codes, t.first_code + y * t.size.x + x).r);
 }
 
-// Into one period.
-float reduced(int wrap, float x) {
-    if (wrap == kClamp) return x > 0.0 ? min(x, 1.0) : 0.0;
-    if (!(abs(x) < 8388608.0)) return 0.0;
-    precise float once = x - floor(x), twice = x - 2.0 * floor(0.5 * x);
-    return wrap == kRepeat ? once : twice;
-}
+// Texels around a place, upper and lower, left and right, and the shares of the second ones.
+struct Around {
+    int x0, x1, y0, y1;
+    vec2 share;
+};
 
-float code_at(Surface s, int x, int y) {
-    return float(texelFetch(opacity_codes, s.first_code + y * s.texture_size.x + x).r);
-}
-
-float texture_opacity(Surface s, vec2 uv) {
-    precise vec2 at = vec2(reduced(s.texture_wrap.x, uv.x), reduced(s.texture_wrap.y, uv.y)) * vec2(s.texture_size);
-    if (s.nearest_texel) {
-        precise float code = code_at(s, wrapped(s.texture_wrap.x, int(floor(at.x)), s.texture_size.x),
-                                     wrapped(s.texture_wrap.y, int(floor(at.y)), s.texture_size.y)) *
-                             (1.0 / 255.0);
-        return code;
-    }
-    precise vec2 between = at - 0.5;
+Around around(OpacityTexture t, vec2 uv) {
+    precise vec2 at = vec2(reduced(t.wrap.x, uv.x), reduced(t.wrap.y, uv.y)) * vec2(t.size);
+    precise vec2 between = t.nearest_texel ? at : at - 0.5;
     precise vec2 share = between - floor(between);
     ivec2 i = ivec2(floor(between));
-    int x0 = wrapped(s.texture_wrap.x, i.x, s.texture_size.x), x1 = wrapped(s.texture_wrap.x, i.x + 1, s.texture_size.x);
-    int y0 = wrapped(s.texture_wrap.y, i.y, s.texture_size.y), y1 = wrapped(s.texture_wrap.y, i.y + 1, s.texture_size.y);
-    precise float above = code_at(s, x0, y0) + (code_at(s, x1, y0) - code_at(s, x0, y0)) * share.x;
-    precise float below = code_at(s, x0, y1) + (code_at(s, x1, y1) - code_at(s, x0, y1)) * share.x;
-    precise float code = (above + (below - above) * share.y) * (1.0 / 255.0);
-    return code;
+    return Around(wrapped(t.wrap.x, i.x, t.size.x), wrapped(t.wrap.x, i.x + 1, t.size.x), wrapped(t.wrap.y, i.y, t.size.y),
+                  wrapped(t.wrap.y, i.y + 1, t.size.y), t.nearest_texel ? vec2(0.0) : share);
 }
 
-vec2 transformed(Surface s, vec2 uv) {
-    precise vec2 straight = s.texture_matrix.xw * uv + s.texture_offset;
-    precise vec2 turned = s.texture_matrix.xy * uv.x + s.texture_matrix.zw * uv.y + s.texture_offset;
-    return s.texture_turned ? turned : straight;
+float bilinear(float a, float b, float c, float d, vec2 share) {
+    precise float above = a + (b - a) * share.x, below = c + (d - c) * share.x;
+    precise float sum = above + (below - above) * share.y;
+    return sum;
 }
 
-uint mixed(uint x) {
-    x ^= x >> 16;
-    x *= 0x7feb352du;
-    x ^= x >> 15;
-    x *= 0x846ca68bu;
-    return x ^ (x >> 16);
+// Pyramid::alpha(): codes are mixed, then decoded.
+float texture_opacity(OpacityTexture t, vec2 uv) {
+    Around p = around(t, uv);
+    precise float alpha = bilinear(code_at(t, p.x0, p.y0), code_at(t, p.x1, p.y0), code_at(t, p.x0, p.y1),
+                                   code_at(t, p.x1, p.y1), p.share) *
+                          (1.0 / 255.0);
+    return alpha;
+}
+
+// Pyramid::sample() of data at level 0: decoded, then mixed.
+float texture_value(OpacityTexture t, vec2 uv) {
+    Around p = around(t, uv);
+    return bilinear(quotient(code_at(t, p.x0, p.y0), 255.0), quotient(code_at(t, p.x1, p.y0), 255.0),
+                    quotient(code_at(t, p.x0, p.y1), 255.0), quotient(code_at(t, p.x1, p.y1), 255.0), p.share);
+}
+
+vec2 transformed(OpacityTexture t, vec2 uv) {
+    precise vec2 straight = t.matrix.xw * uv + t.offset;
+    precise vec2 turned = t.matrix.xy * uv.x + t.matrix.zw * uv.y + t.offset;
+    return t.turned ? turned : straight;
 }
 
 // Kensler 2013, Correlated Multi-Jittered Sampling, section 4.
@@ -125,16 +132,34 @@ float opacity_threshold(uint triangle, ivec2 pixel, uint index) {
     return min(quotient(sum, float(n)), 1.0 - 1.0 / 16777216.0);
 }
 
+// Coordinates at the corners: 0 and 1, 2; b: barycentrics.
+vec2 blended_uv(vec4 uv01, vec4 uv2, vec3 b) {
+    precise vec2 uv = b[0] * uv01.xy + b[1] * uv01.zw + b[2] * uv2.xy;
+    return uv;
+}
+
+// see_through() of the transmission there.
+float glass_opacity(Surface s, float opacity, int record, vec3 b) {
+    float value = 1.0;
+    if (s.glass_textured)
+        value = texture_value(s.of_glass, transformed(s.of_glass, blended_uv(texelFetch(opacity_records, record + 3),
+                                                                             texelFetch(opacity_records, record + 4), b)));
+    precise float left = opacity * (1.0 - 0.875 * (s.transmission * value));
+    return left;
+}
+
 // `in_part`: the triangle within its part; b: barycentrics of the sample.
 bool is_opaque_at(Surface s, uint triangle, uint in_part, vec3 b, ivec2 pixel, uint index) {
     int known = opacity_class(s, in_part);
     if (known != kMixedOpacity) return known == kSolid;
-    int record = 3 * (s.first_record + int(in_part));
-    vec4 uv01 = texelFetch(opacity_records, record), uv2 = texelFetch(opacity_records, record + 1),
-         alphas = texelFetch(opacity_records, record + 2);
-    precise vec2 uv = b[0] * uv01.xy + b[1] * uv01.zw + b[2] * uv2.xy;
+    int record = s.first_record + s.stride * int(in_part);
+    vec4 alphas = texelFetch(opacity_records, record + 2);
+    vec2 uv = blended_uv(texelFetch(opacity_records, record), texelFetch(opacity_records, record + 1), b);
     precise float of_corners = b[0] * alphas.x + b[1] * alphas.y + b[2] * alphas.z;
     precise float alpha = s.alpha_factor * (s.corner_alphas ? of_corners : 1.0) *
-                          (s.textured ? texture_opacity(s, transformed(s, uv)) : s.texture_alpha);
-    return s.alpha_mode == kMask ? alpha >= s.alpha_cutoff : alpha > opacity_threshold(triangle, pixel, index);
+                          (s.textured ? texture_opacity(s.texture, transformed(s.texture, uv)) : s.texture_alpha);
+    if (s.alpha_mode == kMask && !(alpha >= s.alpha_cutoff)) return false;
+    if (!s.glass) return s.alpha_mode == kMask || alpha > opacity_threshold(triangle, pixel, index);
+    float opacity = glass_opacity(s, s.blends ? alpha : 1.0, record, b);
+    return opacity > 0.0 && (opacity >= 1.0 || opacity > opacity_threshold(triangle, pixel, index));
 }

@@ -45,7 +45,12 @@ struct OpacityTerms {
     const TextureRef* ref = nullptr;      ///< of `texture`
     glm::vec2 uv[3] = {};
     float texture_alpha = 1.0f;
-    bool glass = false;  ///< light comes through as well: ask is_opaque_at()
+    bool glass = false;  ///< light comes through as well: ask is_opaque_at(), which needs what follows
+    bool blends = true;  ///< else alpha is a mask or nothing, and glass stops what it does not let through
+    float transmission = 0.0f;
+    const Pyramid* transmission_texture = nullptr;  ///< in R; null: counts as 1 everywhere
+    const TextureRef* transmission_ref = nullptr;
+    glm::vec2 transmission_uv[3] = {};
 };
 OpacityTerms opacity_terms(const Frame& frame, std::uint32_t triangle);
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <dlfcn.h>
 #include <epoxy/egl.h>
@@ -15,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/parallel.h"
 #include "gl/objects.h"
 #include "gl/program.h"
 
@@ -120,6 +122,8 @@ Device::Device() {
     if (dlopen("libEGL.so.1", RTLD_LAZY) == nullptr) refuse("there is no libEGL.so.1");
     if (dlopen("libGL.so.1", RTLD_LAZY) == nullptr && dlopen("libOpenGL.so.0", RTLD_LAZY) == nullptr)
         refuse("there is no libGL.so.1");
+    // Threads that have used OpenGL must be gone when its libraries are: both free what a thread keeps.
+    std::atexit(end_threads);
     make_context();
     const Current current(*this);
     look_around();
@@ -142,7 +146,8 @@ void Device::look_around() {
     max_size_ = std::min(limit(GL_MAX_TEXTURE_SIZE), limit(GL_MAX_VIEWPORT_DIMS));
     // A sample takes a texel of a buffer texture and 8 bytes of a storage block.
     most_block_bytes_ = limit(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
-    most_entries_ = std::min<std::int64_t>(limit(GL_MAX_TEXTURE_BUFFER_SIZE), most_block_bytes_ / 8);
+    most_texels_ = limit(GL_MAX_TEXTURE_BUFFER_SIZE);
+    most_entries_ = std::min(most_texels_, most_block_bytes_ / 8);
     fused_ = fma_rounds_once();
     check("asking the driver");
 }

@@ -37,6 +37,7 @@ class Device {
     int samples() const { return samples_; }                     ///< most samples of a pixel in one pass
     int max_size() const { return max_size_; }                   ///< pixels a side of a framebuffer
     std::int64_t most_entries() const { return most_entries_; }  ///< samples that a buffer holds
+    std::int64_t most_texels() const { return most_texels_; }    ///< elements of a buffer that is read as a texture
     std::int64_t most_block_bytes() const {                      ///< of a storage block
         return pretended_block_bytes_ > 0 ? pretended_block_bytes_ : most_block_bytes_;
     }
@@ -61,7 +62,7 @@ class Device {
     std::string name_;
     std::map<std::string, Program> programs_;
     int samples_ = 1, max_size_ = 0;
-    std::int64_t most_entries_ = 0, most_block_bytes_ = 0, pretended_block_bytes_ = 0;
+    std::int64_t most_entries_ = 0, most_texels_ = 0, most_block_bytes_ = 0, pretended_block_bytes_ = 0;
     bool fused_ = false;
 };
 

@@ -7,6 +7,8 @@ namespace {
 
 // Samples that are kept at once: 8 bytes each here, 24 on the device for those of a pass.
 constexpr std::int64_t kMostSamples = 1 << 24;
+// The same where they are shaded, too: then a sample may take 70 bytes more.
+constexpr std::int64_t kMostShadedSamples = 1 << 22;
 // Cells of a region: a triangle all over it is in 32768 tiles of gl/tiles.glsl, and loops over those must stay short
 // (gl/tile_pass.cpp).
 constexpr std::int64_t kMostCells = 2048;
@@ -25,24 +27,40 @@ GlRasterizer::GlRasterizer(const Frame& frame, const SampleTable& table, const M
       first_cell_x_(limits.x0 / kCellSize),
       first_cell_y_(limits.y0 / kCellSize),
       columns_(cells_upto(limits.x1) - first_cell_x_),
-      rows_(cells_upto(limits.y1) - first_cell_y_) {
-    const std::int64_t samples = std::min(kMostSamples, device_.most_entries());
+      rows_(cells_upto(limits.y1) - first_cell_y_),
+      frame_(frame),
+      method_(method) {
+    plan_regions(kMostSamples);
+}
+
+void GlRasterizer::plan_regions(std::int64_t samples) {
+    samples = std::min(samples, device_.most_entries());
     const int cells =
-        static_cast<int>(std::clamp<std::int64_t>(samples / (kCellSize * kCellSize * table.slots()), 1, kMostCells));
+        static_cast<int>(std::clamp<std::int64_t>(samples / (kCellSize * kCellSize * table_.slots()), 1, kMostCells));
     const int side = device_.max_size() / kCellSize;
     region_columns_ = std::min({columns_, cells, side});
     region_rows_ = std::clamp(cells / region_columns_, 1, std::min(rows_, side));
     const Device::Current current(device_);
+    pipeline_.reset();
     pipeline_ =
-        std::make_unique<Pipeline>(device_, frame, table, method, Region{0, 0, region_columns_, region_rows_, {}});
+        std::make_unique<Pipeline>(device_, frame_, table_, method_, Region{0, 0, region_columns_, region_rows_, {}});
+}
+
+void GlRasterizer::shade_with(const ShadingScene& scene) {
+    if (std::int64_t{region_columns_} * region_rows_ * kCellSize * kCellSize * table_.slots() > kMostShadedSamples)
+        plan_regions(kMostShadedSamples);
+    const Device::Current current(device_);
+    shading_ = std::make_unique<Shading>(device_, scene, table_);
 }
 
 GlRasterizer::~GlRasterizer() {
     try {
         const Device::Current current(device_);
+        shading_.reset();
         pipeline_.reset();
     } catch (const std::exception&) {
-        pipeline_.release();  // the context is gone, and with it all that it held
+        shading_.release();  // the context is gone, and with it all that they held
+        pipeline_.release();
     }
 }
 
@@ -61,20 +79,37 @@ Region GlRasterizer::region_of(int cell_x, int cell_y) const {
     return region;
 }
 
-std::shared_ptr<const RegionHits> GlRasterizer::hits_of(const Region& region, const Tile& tile) const {
+void GlRasterizer::count_use(std::pair<int, int> key, const Tile& tile) const {
+    std::int64_t& left = rendered_[key]->uses_left;
+    left -= std::int64_t{tile.x1 - std::max(tile.x0, limits_.x0)} * (tile.y1 - std::max(tile.y0, limits_.y0));
+    if (left <= 0) rendered_.erase(key);
+}
+
+std::shared_ptr<const GlRasterizer::Rendered> GlRasterizer::covered(const Region& region, const Tile& tile) const {
     const std::pair key(region.cell_x, region.cell_y);
     const std::lock_guard<std::mutex> lock(mutex_);
-    std::shared_ptr<RegionHits>& hits = rendered_[key];
-    if (!hits) {
+    std::shared_ptr<Rendered>& rendered = rendered_[key];
+    if (!rendered) {
         const Device::Current current(device_);
-        hits = std::make_shared<RegionHits>(pipeline_->render(region));
-        hits->pixels_left = std::int64_t{region.width()} * region.height();
+        rendered = std::make_shared<Rendered>();
+        rendered->hits = pipeline_->render(region);
+        rendered->uses_left = std::int64_t{region.width()} * region.height() * (shading_ ? 2 : 1);
     }
-    const std::shared_ptr<const RegionHits> kept = hits;
-    hits->pixels_left -=
-        std::int64_t{tile.x1 - std::max(tile.x0, limits_.x0)} * (tile.y1 - std::max(tile.y0, limits_.y0));
-    if (hits->pixels_left <= 0) rendered_.erase(key);
+    const std::shared_ptr<const Rendered> kept = rendered;
+    count_use(key, tile);
     return kept;
+}
+
+std::shared_ptr<const GlRasterizer::Rendered> GlRasterizer::shaded(const Region& region, const Tile& tile) const {
+    const std::pair key(region.cell_x, region.cell_y);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const std::shared_ptr<Rendered> rendered = rendered_.at(key);
+    if (!rendered->shade) {
+        const Device::Current current(device_);
+        rendered->shade = shading_->shade(region, rendered->hits);
+    }
+    count_use(key, tile);
+    return rendered;
 }
 
 const char* GlRasterizer::pipeline() const {
@@ -83,7 +118,8 @@ const char* GlRasterizer::pipeline() const {
 
 void GlRasterizer::cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map) const {
     const Region region = region_of(tile.cell_x(), tile.cell_y());
-    const std::shared_ptr<const RegionHits> found = hits_of(region, tile);
+    const std::shared_ptr<const Rendered> rendered = covered(region, tile);
+    const RegionHits* const found = &rendered->hits;
     const int slots = table_.slots();
     const std::size_t cell =
         static_cast<std::size_t>(tile.cell_y() - region.cell_y) * region.cell_columns + (tile.cell_x() - region.cell_x);
@@ -106,6 +142,41 @@ void GlRasterizer::cover(const Tile& tile, Hits& hits, CoverCounts& counts, Cove
             map->tested[pixel] += found->tested[place];
             map->covered[pixel] += found->covered[place];
         }
+}
+
+std::int64_t GlRasterizer::shade(const Tile& tile, TileShade& out) const {
+    const Region region = region_of(tile.cell_x(), tile.cell_y());
+    const std::shared_ptr<const Rendered> rendered = shaded(region, tile);
+    const RegionShade& shade = *rendered->shade;
+    const std::size_t of_block = static_cast<std::size_t>(table_.slots()) * kLanes;
+    const std::size_t first = (static_cast<std::size_t>(tile.cell_y() - region.cell_y) * region.cell_columns +
+                               (tile.cell_x() - region.cell_x)) *
+                              kBlocksPerCell * of_block;
+    out.point_of_sample.assign(kBlocksPerCell * of_block, kBackground);
+    out.colors.clear();
+    std::int64_t points = 0;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> known;  // of a pixel: colours there, and here
+    for (int py = std::max(tile.y0, limits_.y0); py < tile.y1; ++py)
+        for (int px = std::max(tile.x0, limits_.x0); px < tile.x1; ++px) {
+            const int block = py % kCellSize / kBlockSize * kCellBlocks + px % kCellSize / kBlockSize;
+            const std::size_t begin = block * of_block + py % kBlockSize * kBlockSize + px % kBlockSize;
+            known.clear();
+            for (std::size_t at = begin; at < begin + of_block; at += kLanes) {
+                const std::uint32_t there = shade.color_of_sample[first + at];
+                if (there == kBackground) continue;
+                const auto same = [&](const auto& pair) { return pair.first == there; };
+                auto found = std::find_if(known.rbegin(), known.rend(), same);
+                if (found == known.rend()) {
+                    const auto of_point = [&](const auto& pair) { return pair.first / 4 == there / 4; };
+                    points += std::none_of(known.begin(), known.end(), of_point);
+                    known.emplace_back(there, static_cast<std::uint32_t>(out.colors.size()));
+                    out.colors.push_back(shade.colors[there]);
+                    found = known.rbegin();
+                }
+                out.point_of_sample[at] = found->second;
+            }
+        }
+    return points;
 }
 
 }  // namespace pentaprism::gl

@@ -72,6 +72,12 @@ inline Object<TextureKind> make_texture(GLenum target) {
     glCreateTextures(target, 1, &name);
     return Object<TextureKind>(name);
 }
+/// A buffer that shaders read as a texture.
+inline Object<TextureKind> view_of(const Buffer& buffer, GLenum format) {
+    Object<TextureKind> view = make_texture(GL_TEXTURE_BUFFER);
+    glTextureBuffer(view, format, buffer);
+    return view;
+}
 inline Object<FramebufferKind> make_framebuffer() {
     GLuint name = 0;
     glCreateFramebuffers(1, &name);

@@ -1,41 +1,76 @@
 #include "gl/opacity_upload.h"
 
-#include <fmt/format.h>
 #include <glm/vec4.hpp>
 #include <map>
-#include <pentaprism/error.h>
 #include <vector>
 
 namespace pentaprism::gl {
 namespace {
 
-// As surface_of() in frame/opacity.glsl reads it: five times four numbers.
-struct SurfaceRecord {
-    std::int32_t mode = 0;
-    std::uint32_t flags = 0;  // corners' alphas, texture, nearest texel, turned texture
-    std::int32_t first_record = 0, first_code = 0;
-    float cutoff = 0, factor = 0, texture_alpha = 0, unused_b = 0;
+// As surface_of() in frame/opacity.glsl reads them.
+struct TextureRecord {
     std::int32_t size[2] = {}, wrap[2] = {};
     float matrix[4] = {};
-    float offset[2] = {}, unused_e[2] = {};
+    float offset[2] = {};
+    std::int32_t first_code = 0;
+    std::uint32_t flags = 0;  // nearest texel, turned
 };
-static_assert(sizeof(SurfaceRecord) == 5 * 4 * sizeof(float));
+struct SurfaceRecord {
+    std::int32_t mode = 0;
+    std::uint32_t flags = 0;  // corners' alphas, texture, glass, texture of glass, alpha blends
+    std::int32_t first_record = 0, stride = kPlainRecord;
+    float cutoff = 0, factor = 0, texture_alpha = 0, transmission = 0;
+    TextureRecord texture, of_glass;
 
-void set_terms(const OpacityTerms& terms, SurfaceRecord& surface) {
-    surface.flags = terms.colored ? 1 : 0;
+    static constexpr std::int32_t kPlainRecord = 3, kGlassRecord = 5;  // vectors of a triangle
+};
+static_assert(sizeof(SurfaceRecord) == 8 * 4 * sizeof(float));
+
+// Codes of textures, each once.
+class Codes {
+  public:
+    /// Place of the first one. `channel`: of RGBA; 3 is the opacity.
+    std::int32_t add(const Pyramid& pyramid, int channel) {
+        const auto [place, is_new] = first_.emplace(std::pair(&pyramid, channel), static_cast<int>(codes_.size()));
+        if (!is_new) return place->second;
+        const std::span<const std::uint8_t> texels = pyramid.codes(0);
+        for (std::size_t i = channel; i < texels.size(); i += 4) codes_.push_back(texels[i]);
+        return place->second;
+    }
+    const std::vector<std::uint8_t>& all() const { return codes_; }
+
+  private:
+    std::vector<std::uint8_t> codes_;
+    std::map<std::pair<const Pyramid*, int>, std::int32_t> first_;
+};
+
+TextureRecord texture_record(const Pyramid& pyramid, const TextureRef& ref, int channel, Codes& codes) {
+    TextureRecord out;
+    out.size[0] = pyramid.width();
+    out.size[1] = pyramid.height();
+    out.wrap[0] = static_cast<std::int32_t>(ref.wrap_s);
+    out.wrap[1] = static_cast<std::int32_t>(ref.wrap_t);
+    const glm::vec4 matrix = uv_matrix(ref);
+    for (int i = 0; i < 4; ++i) out.matrix[i] = matrix[i];
+    out.offset[0] = ref.offset.x;
+    out.offset[1] = ref.offset.y;
+    out.first_code = codes.add(pyramid, channel);
+    out.flags = (ref.nearest ? 1u : 0u) | (ref.rotation != 0.0f ? 2u : 0u);
+    return out;
+}
+
+void set_terms(const OpacityTerms& terms, SurfaceRecord& surface, Codes& codes) {
+    surface.flags = (terms.colored ? 1u : 0u) | (terms.texture ? 2u : 0u) | (terms.glass ? 4u : 0u) |
+                    (terms.transmission_texture ? 8u : 0u) | (terms.blends ? 16u : 0u);
     surface.cutoff = terms.cutoff;
     surface.factor = terms.factor;
     surface.texture_alpha = terms.texture_alpha;
-    if (terms.texture == nullptr) return;
-    surface.flags |= 2u | (terms.ref->nearest ? 4u : 0u) | (terms.ref->rotation != 0.0f ? 8u : 0u);
-    surface.size[0] = terms.texture->width();
-    surface.size[1] = terms.texture->height();
-    surface.wrap[0] = static_cast<std::int32_t>(terms.ref->wrap_s);
-    surface.wrap[1] = static_cast<std::int32_t>(terms.ref->wrap_t);
-    const glm::vec4 matrix = uv_matrix(*terms.ref);
-    for (int i = 0; i < 4; ++i) surface.matrix[i] = matrix[i];
-    surface.offset[0] = terms.ref->offset.x;
-    surface.offset[1] = terms.ref->offset.y;
+    surface.transmission = terms.transmission;
+    if (terms.texture) surface.texture = texture_record(*terms.texture, *terms.ref, 3, codes);
+    if (!terms.glass) return;
+    surface.stride = SurfaceRecord::kGlassRecord;
+    if (terms.transmission_texture)
+        surface.of_glass = texture_record(*terms.transmission_texture, *terms.transmission_ref, 0, codes);
 }
 
 void append_triangle(const Frame& frame, std::uint32_t triangle, std::vector<glm::vec4>& records) {
@@ -44,48 +79,30 @@ void append_triangle(const Frame& frame, std::uint32_t triangle, std::vector<glm
     records.emplace_back(terms.uv[0].x, terms.uv[0].y, terms.uv[1].x, terms.uv[1].y);
     records.emplace_back(terms.uv[2].x, terms.uv[2].y, known, 0.0f);
     records.emplace_back(terms.color[0], terms.color[1], terms.color[2], 0.0f);
-}
-
-Object<TextureKind> view_of(const Buffer& buffer, GLenum format) {
-    Object<TextureKind> view = make_texture(GL_TEXTURE_BUFFER);
-    glTextureBuffer(view, format, buffer);
-    return view;
-}
-
-[[noreturn]] void refuse_glass(const Frame& frame, const Part& part) {
-    throw Error(ErrorKind::kBackend,
-                fmt::format("--backend gl: material '{}' lets light through (KHR_materials_transmission), which only "
-                            "--backend cpu can do",
-                            frame.scene->materials[part.material].name));
+    if (!terms.glass) return;
+    const glm::vec2* uv = terms.transmission_uv;
+    records.emplace_back(uv[0].x, uv[0].y, uv[1].x, uv[1].y);
+    records.emplace_back(uv[2].x, uv[2].y, 0.0f, 0.0f);
 }
 
 }  // namespace
 
 OpacityUpload::OpacityUpload(const Frame& frame) {
     std::vector<glm::vec4> records;
-    std::vector<std::uint8_t> codes;
     std::vector<SurfaceRecord> surfaces;
-    std::map<const Pyramid*, int> first_code;  // textures that were met before
+    Codes codes;
     for (const Part& part : frame.parts) {
         SurfaceRecord& surface = surfaces.emplace_back();
         if (part.alpha_mode == AlphaMode::kOpaque || part.material == kNone || part.triangle_count == 0) continue;
         // All but uv and colours are the same for all triangles.
-        const OpacityTerms terms = opacity_terms(frame, part.first_triangle);
-        if (terms.glass) refuse_glass(frame, part);
         surface.mode = static_cast<std::int32_t>(part.alpha_mode);
-        surface.first_record = static_cast<std::int32_t>(records.size() / 3);
-        set_terms(terms, surface);
+        surface.first_record = static_cast<std::int32_t>(records.size());
+        set_terms(opacity_terms(frame, part.first_triangle), surface, codes);
         for (std::uint32_t t = 0; t < part.triangle_count; ++t)
             append_triangle(frame, part.first_triangle + t, records);
-        const Pyramid* texture = terms.texture;
-        if (texture == nullptr) continue;
-        const auto [place, is_new] = first_code.emplace(texture, static_cast<int>(codes.size()));
-        surface.first_code = place->second;
-        const std::size_t texels = static_cast<std::size_t>(texture->width()) * texture->height();
-        if (is_new) codes.insert(codes.end(), texture->opacity_codes(), texture->opacity_codes() + texels);
     }
     records_ = Buffer(records.size() * sizeof(glm::vec4), records.data());
-    codes_ = Buffer(codes.size(), codes.data());
+    codes_ = Buffer(codes.all().size(), codes.all().data());
     surfaces_ = Buffer(surfaces.size() * sizeof(SurfaceRecord), surfaces.data());
     record_view_ = view_of(records_, GL_RGBA32F);
     code_view_ = view_of(codes_, GL_R8UI);

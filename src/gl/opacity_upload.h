@@ -9,7 +9,6 @@ namespace pentaprism::gl {
 
 class OpacityUpload {
   public:
-    /// Throws Error(kBackend) for glass, by the name of its material.
     explicit OpacityUpload(const Frame& frame);
 
     /// Its three buffers, to texture units from `first` on.

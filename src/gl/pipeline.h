@@ -13,7 +13,6 @@ struct RegionHits {
     std::vector<float> depth;  ///< [cell][as in Hits]
     std::vector<std::uint32_t> triangle;
     std::vector<std::uint32_t> tested, covered;  ///< of each pixel of the region, row by row
-    std::int64_t pixels_left = 0;                ///< not yet asked for
 };
 
 class Pipeline {

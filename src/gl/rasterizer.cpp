@@ -12,9 +12,9 @@ namespace pentaprism {
 
 #ifdef PENTAPRISM_HAVE_GL
 
-std::unique_ptr<const Rasterizer> make_gl_rasterizer(const Frame& frame, const SampleTable& table,
-                                                     const MethodSettings& method, const PixelRect& limits) {
-    return std::make_unique<const gl::GlRasterizer>(frame, table, method, limits);
+std::unique_ptr<Rasterizer> make_gl_rasterizer(const Frame& frame, const SampleTable& table,
+                                               const MethodSettings& method, const PixelRect& limits) {
+    return std::make_unique<gl::GlRasterizer>(frame, table, method, limits);
 }
 
 std::vector<std::string> gl_culling_choices() {
@@ -36,8 +36,8 @@ namespace {
 }
 }  // namespace
 
-std::unique_ptr<const Rasterizer> make_gl_rasterizer(const Frame&, const SampleTable&, const MethodSettings&,
-                                                     const PixelRect&) {
+std::unique_ptr<Rasterizer> make_gl_rasterizer(const Frame&, const SampleTable&, const MethodSettings&,
+                                               const PixelRect&) {
     refuse();
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Visibility on a graphics card: the same frame, the same samples and the same exact test as the coverage stage, in
-// OpenGL (gl/gl_rasterizer.h). A build may be without it.
+// Visibility and shading on a graphics card: the same frame, the same samples and the same exact test as the coverage
+// stage, in OpenGL (gl/gl_rasterizer.h). A build may be without it.
 
 #include <memory>
 #include <pentaprism/settings.h>
@@ -9,6 +9,8 @@
 
 #include "bound/screen_bounds.h"
 #include "cover/cover.h"
+#include "shade/shading_scene.h"
+#include "shade/tile_shade.h"
 
 namespace pentaprism {
 
@@ -20,6 +22,13 @@ class Rasterizer {
     /// rendered with the first tile that asks, while others wait.
     virtual void cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map) const = 0;
 
+    /// From now on shades what is seen, as ShadingRate::kPixel. Before the first cover(); `scene` must outlive this.
+    /// Throws Error(kBackend) if the scene is too large for the device.
+    virtual void shade_with(const ShadingScene& scene) = 0;
+
+    /// As TileShader::shade(), of a tile that was covered, once; what misses show is left to others. Thread-safe.
+    virtual std::int64_t shade(const Tile& tile, TileShade& out) const = 0;
+
     /// GlPipeline that does it: geometry or compute.
     virtual const char* pipeline() const = 0;
 };
@@ -27,8 +36,8 @@ class Rasterizer {
 /// Of `method` culling and gl_pipeline count. `limits`: the pixels that will be asked for. Frame and table must outlive
 /// it. Throws Error(kBackend) in a build without OpenGL, without a driver and when it fails, Error(kUsage) for culling
 /// that is not there in GLSL.
-std::unique_ptr<const Rasterizer> make_gl_rasterizer(const Frame& frame, const SampleTable& table,
-                                                     const MethodSettings& method, const PixelRect& limits);
+std::unique_ptr<Rasterizer> make_gl_rasterizer(const Frame& frame, const SampleTable& table,
+                                               const MethodSettings& method, const PixelRect& limits);
 
 /// What `--culling` takes with this backend, without combinations; empty in a build without it.
 std::vector<std::string> gl_culling_choices();

@@ -7,15 +7,15 @@ namespace {
 
 constexpr GLuint kAtOpen = 0, kAtClose = 1, kDepthAtOpen = 2, kDepthAtClose = 3;
 
-// All of it is exact: see gl/samples.glsl.
-glm::uvec4 packed(const SampleVector& samples, int lane, std::uint32_t index) {
+}  // namespace
+
+// All of it is exact.
+glm::uvec4 packed_sample(const SampleVector& samples, int lane, std::uint32_t index) {
     const auto place = [](float h) { return static_cast<std::uint32_t>((h + kCellSize / 2) * 256.0f); };
     const std::uint32_t t = static_cast<std::uint32_t>(samples.t[lane] * 0x1p24f);
     return {std::bit_cast<std::uint32_t>(samples.u[lane]), std::bit_cast<std::uint32_t>(samples.v[lane]),
             t << 8 | (index & 0xff), place(samples.x[lane]) | place(samples.y[lane]) << 14 | index >> 8 << 28};
 }
-
-}  // namespace
 
 FrameUpload::FrameUpload(const Frame& frame)
     : points_(frame.points.size() * sizeof(glm::vec4), frame.points.data()),
@@ -73,7 +73,7 @@ void SampleUpload::write(const SampleTable& table, const Region& region, int fir
                 for (int slot = first; slot < first + count; ++slot) {
                     const SampleVector& samples = vectors[static_cast<std::size_t>(block) * table.slots() + slot];
                     for (int lane = 0; lane < kLanes; ++lane)
-                        packed_.push_back(packed(samples, lane, indices[slot * kLanes + lane]));
+                        packed_.push_back(packed_sample(samples, lane, indices[slot * kLanes + lane]));
                 }
             }
         }

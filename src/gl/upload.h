@@ -31,6 +31,9 @@ class FrameUpload {
     Object<VertexArrayKind> attributes_;
 };
 
+/// One sample as gl/sample_bits.glsl reads it. `index`: of the sample in its pixel.
+glm::uvec4 packed_sample(const SampleVector& samples, int lane, std::uint32_t index);
+
 /// The samples of one pass, packed as gl/samples.glsl reads them.
 class SampleUpload {
   public:

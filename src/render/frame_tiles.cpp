@@ -85,6 +85,8 @@ FrameTiles::FrameTiles(const Scene& scene, const KeptParts& kept, const RenderSe
     const MethodSettings& method = settings.method;
     shading_.emplace(frame_, ShadingOptions{method.shadows, method.brdf, method.texture_filter, rate_of(method.shading),
                                             kept.environment});
+    device_shades_ = method.backend == Backend::kGl && shading_->options().rate == ShadingRate::kPixel;
+    if (device_shades_) visibility_->shade_with(*shading_);
     prepare_ms_ = lap();
     make_aovs(number);
 }
@@ -178,11 +180,18 @@ void FrameTiles::cover_and_shade(const Tile& tile, const SampleTable& samples, W
     CoverCounts counts;
     visibility_->cover(tile, samples, worker.hits, counts, tests_ && !to_decide ? &*tests_ : nullptr);
     const auto covered = Clock::now();
-    costs_.shaded += worker.shader.shade(*shading_, samples, tile, worker.hits, worker.shade, to_decide);
+    costs_.shaded += shade(tile, samples, worker, to_decide);
     costs_.cover_ns += nanoseconds(covered - start);
     costs_.shade_ns += nanoseconds(Clock::now() - covered);
     costs_.tested += counts.tested;
     costs_.covered += counts.covered;
+}
+
+std::int64_t FrameTiles::shade(const Tile& tile, const SampleTable& samples, Worker& worker, bool roughly) const {
+    if (!device_shades_) return worker.shader.shade(*shading_, samples, tile, worker.hits, worker.shade, roughly);
+    const std::int64_t points = visibility_->shade(tile, worker.shade);
+    worker.shader.shade_misses(*shading_, samples, tile, worker.hits, worker.shade);
+    return points;
 }
 
 // Its time counts as shading: coverage comes in between.

@@ -68,6 +68,8 @@ class FrameTiles {
     void add_samples(const Tile& tile, const SampleTable& samples, Worker& worker);
     /// Makes it when it is asked for first.
     const SampleTable& samples_of_level(std::size_t level);
+    /// Of hits that are in the worker; returns the number of points.
+    std::int64_t shade(const Tile& tile, const SampleTable& samples, Worker& worker, bool roughly) const;
     int delivered_pixels(const Tile& tile) const;
     FrameInfo describe(std::span<const Index> animations, double number) const;
     void make_aovs(double number);
@@ -81,6 +83,7 @@ class FrameTiles {
     std::mutex making_;                                   // of for_levels_
     std::optional<Visibility> visibility_;
     std::optional<ShadingScene> shading_;
+    bool device_shades_ = false;
     FrameInfo info_;
     std::optional<FrameIds> ids_;  // made only for output variables that need them
     std::optional<Flow> flow_;

@@ -41,6 +41,10 @@ class Visibility {
     void cover_layers(const Tile& tile, const SampleTable& samples, const Hits& solid, Layers& layers,
                       CoverCounts& counts) const;
 
+    /// Of Backend::kGl: shades on the device, too (gl/rasterizer.h).
+    void shade_with(const ShadingScene& scene) { rasterizer_->shade_with(scene); }
+    std::int64_t shade(const Tile& tile, TileShade& out) const { return rasterizer_->shade(tile, out); }
+
     /// 0 for a tracer and for a backend that bins on its own.
     std::int64_t binned_triangles() const { return bins_ ? static_cast<std::int64_t>(bins_->triangles().size()) : 0; }
 
@@ -58,7 +62,7 @@ class Visibility {
     Culling culling_;  ///< empty: the fast path
     std::optional<Bins> bins_;
     std::unique_ptr<const Tracer> tracer_;
-    std::unique_ptr<const Rasterizer> rasterizer_;
+    std::unique_ptr<Rasterizer> rasterizer_;
     std::vector<Tile> tiles_;
 };
 

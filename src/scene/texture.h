@@ -47,6 +47,14 @@ class Pyramid {
     /// All of them, row by row; null if every texel of level 0 has the same opacity, that of opacity_code(0, 0).
     const std::uint8_t* opacity_codes() const { return opacity_.empty() ? nullptr : opacity_.data(); }
 
+    /// The texels of a level as they are stored: RGBA codes, row by row; and its size.
+    std::span<const std::uint8_t> codes(int level) const { return levels_[level].texels; }
+    int width(int level) const { return levels_[level].width; }
+    int height(int level) const { return levels_[level].height; }
+
+    /// What each code of R, G and B stands for: 256 linear values. A stands for code / 255.
+    std::span<const float, 256> color_of_code() const { return std::span<const float, 256>(color_of_code_, 256); }
+
     /// One decoded texel, for tests; x and y inside the level.
     glm::vec4 texel(int level, int x, int y) const;
 

@@ -82,6 +82,10 @@ const AlbedoTable& albedo_table() {
 
 }  // namespace
 
+std::span<const glm::vec2> specular_albedo_table() {
+    return {albedo_table()[0].data(), kTableSize * kTableSize};
+}
+
 glm::vec2 specular_albedo(float cos_view, float roughness) {
     const AlbedoTable& table = albedo_table();
     const float x = std::sqrt(std::clamp(cos_view, 0.0f, 1.0f)) * (kTableSize - 1);
@@ -213,6 +217,10 @@ const std::array<std::array<float, kSheenTable>, kSheenTable>& sheen_table() {
 }
 
 }  // namespace
+
+std::span<const float> sheen_albedo_table() {
+    return {sheen_table()[0].data(), kSheenTable * kSheenTable};
+}
 
 float sheen_albedo(float cos_view, float roughness) {
     const auto& table = sheen_table();

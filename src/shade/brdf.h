@@ -9,6 +9,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <pentaprism/settings.h>
+#include <span>
 
 namespace pentaprism {
 
@@ -17,6 +18,9 @@ inline constexpr float kLeastRoughness = 0.045f;
 
 /// Directional albedo of the specular lobe: E = f0 * x + f90 * y. From a table; cos_view in (0, 1].
 glm::vec2 specular_albedo(float cos_view, float roughness);
+
+/// The table, [32 * row + column]: rows by roughness from 0 to 1, columns by the square root of cos_view.
+std::span<const glm::vec2> specular_albedo_table();
 
 /// How a dielectric reflects: KHR_materials_ior and KHR_materials_specular.
 struct DielectricReflection {
@@ -80,5 +84,8 @@ class Sheen {
 
 /// Directional albedo of white sheen, from a table.
 float sheen_albedo(float cos_view, float roughness);
+
+/// That table, 16 x 16, arranged as the other one.
+std::span<const float> sheen_albedo_table();
 
 }  // namespace pentaprism

@@ -42,6 +42,10 @@ class Environment {
 
     const std::optional<Sun>& sun() const { return sun_; }
 
+    /// What matte() and shiny() look up.
+    const std::array<glm::vec3, 9>& harmonics() const { return harmonics_; }
+    const std::vector<Map>& levels() const { return levels_; }
+
   private:
     void take_out_sun(Map& map);
     void project(const Map& map);

@@ -113,6 +113,18 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
     return shaded_;
 }
 
+void TileShader::shade_misses(const ShadingScene& scene, const SampleTable& samples, const Tile& tile, const Hits& hits,
+                              TileShade& out) {
+    if (!scene.has_background()) return;
+    scene_ = &scene;
+    const SampleVector* vectors = samples.cell(tile.cell_x(), tile.cell_y(), room_).data();
+    const int blocks_per_chunk = std::max(1, kSamplesPerChunk / (kLanes * samples.slots()));
+    for (int block = 0; block < kBlocksPerCell; block += blocks_per_chunk) {
+        samples_.collect(samples, tile, hits, block, std::min(block + blocks_per_chunk, kBlocksPerCell));
+        shade_background(vectors, tile, out);
+    }
+}
+
 // The samples of one pixel share a point, or none do; those that see the back are another point.
 void TileShader::shade_pixels(const Run& run, const Tile& tile, TileShade& out) {
     const bool each = scene_->options().rate == ShadingRate::kSample;

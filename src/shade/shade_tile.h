@@ -42,6 +42,11 @@ class TileShader {
     std::int64_t shade(const ShadingScene& scene, const SampleTable& samples, const Tile& tile, const Hits& hits,
                        TileShade& out, bool roughly = false);
 
+    /// Adds the colours of misses alone, for tiles whose surfaces were shaded elsewhere. Nothing if there are no
+    /// surroundings.
+    void shade_misses(const ShadingScene& scene, const SampleTable& samples, const Tile& tile, const Hits& hits,
+                      TileShade& out);
+
   private:
     /// The samples of one triangle.
     struct Run {

@@ -53,6 +53,7 @@ class ShadingScene {
     ShadingScene& operator=(const ShadingScene&) = delete;
 
     const Frame& frame() const { return frame_; }
+    const std::vector<ShadedPart>& parts() const { return parts_; }  ///< as Frame::parts
     const ShadedPart& part_of(std::uint32_t triangle) const { return parts_[frame_.part_of[triangle]]; }
     const ShadingOptions& options() const { return options_; }
     const Lighting& lighting() const { return lighting_; }
@@ -71,6 +72,9 @@ class ShadingScene {
     /// At (gx, gy) pixels from the middle of the picture, y up, through (u, v) of the lens at time t: what is
     /// infinitely far away.
     glm::vec3 background(float gx, float gy, float u, float v, float t) const;
+
+    /// Unit vector against the direction of view.
+    const glm::vec3& backwards() const { return backwards_; }
 
     /// Unit vector from a point to the eye; for an orthographic camera the same everywhere.
     glm::vec3 to_eye(const glm::vec3& position) const;

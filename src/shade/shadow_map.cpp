@@ -140,6 +140,10 @@ const float* ShadowMap::depths(int exponent, int limit, int cx, int cy) const {
     return expected;
 }
 
+bool ShadowMap::is_empty(const float* depths) {
+    return depths == kEmptyCell.data();
+}
+
 const float* ShadowMap::render(int exponent, int cx, int cy, const List& list) const {
     if (list.empty()) return kEmptyCell.data();
     static thread_local AlignedVector<float> depths(ShadowSamples::kPerCell), bounds(ShadowSamples::kPerCell);

@@ -47,6 +47,8 @@ class ShadowMap {
     /// Depths beyond which a cell's samples are in shadow (DrawShadowCell); infinite where nothing is hit before the
     /// limit, and perhaps so beyond it. Thread-safe, and the same whoever asks first.
     const float* depths(int exponent, int limit, int cx, int cy) const;
+    /// Whether these depths are those of a cell in which nothing is.
+    static bool is_empty(const float* depths);
     const ShadowSamples::Cell& samples(int cx, int cy) const { return samples_.cell(cx, cy); }
 
     std::int64_t cells_rendered() const { return cells_rendered_; }

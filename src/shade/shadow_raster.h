@@ -23,14 +23,16 @@ class ShadowSamples {
     struct alignas(64) Cell {
         float x[kPerCell], y[kPerCell], t[kPerCell];  ///< texels from the cell's middle, y up; t in [0, 1)
     };
+    static constexpr int kPeriod = 4;  ///< cells, both ways, of the table of all cells
     explicit ShadowSamples(std::uint32_t seed);
     const Cell& cell(int cx, int cy) const { return cells_[index_of(cx, cy)]; }
     const SampleTable& table() const { return table_; }
-
-  private:
+    std::uint32_t seed() const { return seed_; }
+    /// The cells that there are; which of them serves a place: index_of().
+    std::span<const Cell> cells() const { return {cells_.get(), kPeriod * kPeriod}; }
     std::size_t index_of(int cx, int cy) const;
 
-    static constexpr int kPeriod = 4;  // cells, both ways
+  private:
     std::uint32_t seed_;
     SampleTable table_;
     std::unique_ptr<Cell[]> cells_;

@@ -3,6 +3,7 @@
 // of these, those on which no point lies cost nothing.
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "shade/lights.h"
@@ -20,6 +21,12 @@ class Shadows {
 
     /// Whether shadows or what they fall on may change while the shutter is open.
     bool move() const { return world_.moves; }
+
+    /// For those who look them up themselves; of the second one only if any().
+    const WorldMotion& world() const { return world_; }
+    const ShadowSamples& samples() const { return *samples_; }
+    /// Of a light: none, one map, or six: +x -x +y -y +z -z.
+    std::span<const std::unique_ptr<ShadowMap>> faces(std::size_t light) const { return maps_[light].faces; }
 
     /// Cells of all maps rendered so far; a cell that two threads needed at once may count twice.
     std::int64_t cells_rendered() const;

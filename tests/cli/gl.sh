@@ -29,6 +29,15 @@ for threads in 1 4; do
     check "with $threads threads, too" cmp cpu.exr again.exr
 done
 
+shaded=("${picture[@]}" --shading pixel)
+succeeds "${shaded[@]}" -o cpu.exr --stats cpu.json
+succeeds "${shaded[@]}" -o gl.exr --backend gl --stats gl.json
+succeeds compare cpu.exr gl.exr --fail-above 0.001
+check "the device shaded as many points" json gl.json 'd["shaded"] == json.load(open("cpu.json"))["shaded"] > 0'
+succeeds "${shaded[@]}" -o sky.exr --background sky --backend gl
+succeeds "${shaded[@]}" -o cpu.exr --background sky
+succeeds compare cpu.exr sky.exr --fail-above 0.001
+
 succeeds bench builtin:cubes --backend gl -r 32x32 -s 2 --effects both --methods none,hyperplane --runs 1 --json
 check "bench rows are gl's and lose nothing" json out 'all(r["backend"] == "gl-compute" and r["false_culls"] == 0 and 0 < r["ste"] <= 1 for r in d["rows"])'
 
