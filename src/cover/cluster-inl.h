@@ -193,8 +193,7 @@ HWY_NOINLINE inline std::size_t jobs_of_triangle(TileState& state, const Cluster
     } else {  // a vector's Compress is slow elsewhere
         for (std::size_t i = 0; i < list.count; ++i) {
             jobs[count] = list.jobs[i];
-            count +=
-                (list.triangles[i] >> k & 1u) & static_cast<std::uint32_t>(nearest <= list.farthest[i]);
+            count += (list.triangles[i] >> k & 1u) & static_cast<std::uint32_t>(nearest <= list.farthest[i]);
         }
     }
     return count;
