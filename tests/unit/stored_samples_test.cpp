@@ -13,7 +13,6 @@ namespace {
 
 using Bytes = std::vector<std::byte>;
 constexpr int kSize = 64;
-constexpr double kFocal = kSize / 2;  // pixels
 
 struct MemorySink : ByteSink {
     Bytes bytes;
