@@ -96,7 +96,7 @@ HWY_INLINE void test(const ShadowCellWork& work, const ShadowSamples::Cell& samp
 // beside the triangle.
 template <bool kMoves, bool kPerspective>
 HWY_NOINLINE void draw_triangle(const ShadowCellWork& work, const Triangle& T, float* depths, float* bounds) {
-    constexpr int kSmall = 4;
+    constexpr int kSmall = 8;
     const ShadowSamples::Cell& samples = work.samples.cell(work.cx, work.cy);
     const ShadowSetup& S = T.setup;
     std::optional<OpacityTerms> terms;
