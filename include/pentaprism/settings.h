@@ -53,10 +53,10 @@ struct ShutterPoint {
 struct ImageSettings {
     int width = 1280, height = 720;  ///< pixels, 1 to 16384
     int spp = 16;                    ///< samples per pixel, 1 to 4096
-    /// Set: each block of 4 x 4 pixels gets spp to max_spp samples per pixel, as many as bring the error (standard
-    /// deviation) of its pixels down to this, as far as a few samples that are not shown can tell. Of the root of
-    /// linear colour, exposure applied: 0.01 is a hundredth of what lies between black and white. Above 0 to 1. For
-    /// VisibilityMethod::kStochastic on the processor; a frame's samples cannot be stored.
+    /// Set: each block of 4 x 4 pixels gets spp to max_spp samples per pixel: 64 where these bring the error (standard
+    /// deviation) of its pixels down to this, as far as a few samples that are not shown can tell, more or fewer by its
+    /// noise. Of the root of linear colour, exposure applied: 0.01 is a hundredth of what lies between black and white.
+    /// Above 0 to 1. For kStochastic on the processor, whose tiles are of 32 pixels then; samples cannot be stored.
     std::optional<double> target_error;
     int max_spp = 1024;  ///< spp to 4096
     Filter filter = Filter::kBlackmanHarris;

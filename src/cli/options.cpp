@@ -25,11 +25,12 @@ void add_image_options(CLI::App& command, ImageSettings& image) {
               [&](const std::string& text) { std::tie(image.width, image.height) = parse_size("--resolution", text); });
     add_value(command, group, "-s,--spp", "N", "Samples per pixel, 1 to 4096 (default 16)",
               [&](const std::string& text) { image.spp = static_cast<int>(parse_whole("--spp", text, 1, 4096)); });
-    CLI::Option* target = add_value(
-        command, group, "--target-error", "E",
-        "Give each 4x4 pixels as many samples, --spp to --max-spp, as bring their error down to E; 0.01 is a hundredth "
-        "of the way from black to white (default: --spp everywhere)",
-        [&](const std::string& text) { image.target_error = parse_number("--target-error", text); });
+    CLI::Option* target =
+        add_value(command, group, "--target-error", "E",
+                  "Give each 4x4 pixels --spp to --max-spp samples, more where they are noisier: 64 where these bring "
+                  "the error down "
+                  "to E; 0.01 is a hundredth of the way from black to white (default: --spp everywhere)",
+                  [&](const std::string& text) { image.target_error = parse_number("--target-error", text); });
     add_value(
         command, group, "--max-spp", "N", "The most samples per pixel that --target-error gives (default 1024)",
         [&](const std::string& text) { image.max_spp = static_cast<int>(parse_whole("--max-spp", text, 1, 4096)); })

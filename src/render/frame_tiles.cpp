@@ -50,6 +50,15 @@ bool asks(const ImageSettings& image, std::initializer_list<Aov> some) {
     });
 }
 
+// The cells of that part and a block around them, as far as the picture goes.
+PixelRect cells_and_a_block(const PixelRect& part, const FrameInfo& info) {
+    const auto begin = [](int at) { return std::max(0, at / kCellSize * kCellSize - kBlockSize); };
+    const auto end = [](int at, int size) {
+        return std::min(size, (at + kCellSize - 1) / kCellSize * kCellSize + kBlockSize);
+    };
+    return {begin(part.x0), end(part.x1, info.width), begin(part.y0), end(part.y1, info.height)};
+}
+
 template <class T>
 const T* pointer_to(const std::optional<T>& value) {
     return value ? &*value : nullptr;
@@ -70,17 +79,20 @@ FrameTiles::FrameTiles(const Scene& scene, const KeptParts& kept, const RenderSe
     frame_.textures = kept.textures;
     pose_ms_ = lap();
     if (settings.image.target_error) {
+        settings_.method.tile_size = kCellSize;  // what a budget counts in
         budget_.emplace(settings.image, settings.method.sampler, background_of(scene, settings.image));
         MethodSettings pilot = settings.method;
         pilot.seed = SampleBudget::pilot_seed(pilot.seed);
-        samples_.emplace(make_samples(frame_, budget_->pilot_spp(), pilot));
+        samples_.emplace(make_samples(frame_, SampleBudget::kPilotSpp, pilot));
         for_levels_.resize(budget_->levels().size());
     } else {
         samples_.emplace(make_samples(frame_, settings.image.spp, settings.method));
     }
     samples_ms_ = lap();
     info_ = describe(animations, number);
-    visibility_.emplace(frame_, *samples_, settings.method, rendered_part(info_, filter_.reach()));
+    const PixelRect part = rendered_part(info_, filter_.reach());
+    tiles_ = tiles_over(part, settings_.method.tile_size);
+    visibility_.emplace(frame_, *samples_, settings_.method, budget_ ? cells_and_a_block(part, info_) : part);
     bin_ms_ = lap();
     const MethodSettings& method = settings.method;
     shading_.emplace(frame_, ShadingOptions{method.shadows, method.brdf, method.texture_filter, rate_of(method.shading),
@@ -228,12 +240,21 @@ const SampleTable& FrameTiles::samples_of_level(std::size_t level) {
     return *samples;
 }
 
+std::vector<Tile> FrameTiles::tiles_to_decide(std::span<const Tile> tiles) const {
+    if (!budget_) return {};
+    return budget_->tiles_to_know(tiles, visibility_->tiles());
+}
+
+void FrameTiles::decide(const Tile& tile, Worker& worker) {
+    cover_and_shade(tile, *samples_, worker, true);
+    budget_->note(tile, *samples_, worker.shade);
+    costs_.pilot_samples += std::int64_t{delivered_pixels(tile)} * samples_->spp();
+}
+
 void FrameTiles::render(const Tile& tile, Worker& worker) {
     worker.sums.start(tile, filter_.reach(), channel_count(info_.aovs));
     if (!budget_) return add_samples(tile, *samples_, worker);
-    cover_and_shade(tile, *samples_, worker, true);
-    costs_.pilot_samples += std::int64_t{delivered_pixels(tile)} * samples_->spp();
-    const auto blocks = budget_->share_out(tile, *samples_, worker.shade);
+    const auto blocks = budget_->share_out(tile);
     for (std::size_t level = 0; level < blocks.size(); ++level) {
         if (blocks[level] == 0) continue;
         Tile part = tile;

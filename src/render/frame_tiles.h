@@ -9,6 +9,7 @@
 #include <mutex>
 #include <optional>
 #include <pentaprism/render.h>
+#include <span>
 
 #include "render/layer_shading.h"
 #include "render/sample_budget.h"
@@ -36,7 +37,10 @@ class FrameTiles {
     const FrameInfo& info() const { return info_; }
     const View& view() const { return frame_.view; }
     int reach() const { return filter_.reach(); }
-    const std::vector<Tile>& tiles() const { return visibility_->tiles(); }
+    const std::vector<Tile>& tiles() const { return tiles_; }
+
+    /// Tiles that must go through decide() before any of `tiles` is rendered.
+    std::vector<Tile> tiles_to_decide(std::span<const Tile> tiles) const;
 
     /// What a thread needs to take a tile from its bin to sums, kept between tiles.
     struct Worker {
@@ -48,7 +52,9 @@ class FrameTiles {
         TileSums sums;
         std::vector<StoredSample> samples;
     };
-    /// Leaves the tile in worker.sums. Thread-safe for different workers.
+    /// Thread-safe for different workers, as those that follow.
+    void decide(const Tile& tile, Worker& worker);
+    /// Leaves the tile in worker.sums.
     void render(const Tile& tile, Worker& worker);
     /// The same, but leaves its samples in worker.samples.
     void store(const Tile& tile, Worker& worker);
@@ -82,6 +88,7 @@ class FrameTiles {
     std::vector<std::optional<SampleTable>> for_levels_;  // of the budget's levels: those that a block got so far
     std::mutex making_;                                   // of for_levels_
     std::optional<Visibility> visibility_;
+    std::vector<Tile> tiles_;
     std::optional<ShadingScene> shading_;
     bool device_shades_ = false;
     FrameInfo info_;

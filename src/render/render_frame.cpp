@@ -47,6 +47,13 @@ class ProgressMeter {
     std::mutex mutex_;
 };
 
+void decide(FrameTiles& frame, std::span<const Tile> tiles, Pool<FrameTiles::Worker>& workers, ProgressMeter& meter) {
+    parallel_for(tiles.size(), [&](std::size_t i) {
+        frame.decide(tiles[i], *workers.lease());
+        meter.step();
+    });
+}
+
 }  // namespace
 
 Renderer::Renderer(const Scene& scene) : scene_(scene), textures_(make_textures(scene)) {}
@@ -77,8 +84,10 @@ void Renderer::render(const RenderSettings& settings, double number, RowSink& si
     run(settings, number, stats, [&](FrameTiles& frame) {
         PictureRows picture(frame.info(), frame.reach(), settings.image.exposure, sink);
         const std::vector<Tile>& tiles = frame.tiles();
-        ProgressMeter meter(progress, tiles.size());
+        const std::vector<Tile> to_decide = frame.tiles_to_decide(tiles);
+        ProgressMeter meter(progress, to_decide.size() + tiles.size());
         Pool<FrameTiles::Worker> workers;
+        decide(frame, to_decide, workers, meter);
         picture.assemble(tiles, [&](std::size_t first, std::size_t last) {
             parallel_for(last - first, [&](std::size_t i) {
                 const auto worker = workers.lease();
@@ -97,10 +106,12 @@ constexpr std::size_t kRun = 256;
 // Makes the tiles in parallel and writes them in order. `make` leaves one in the worker; `kept` is the member of it
 // that holds it, and `write` its way to the output; `run` of them are kept until those before are written.
 template <class T, class Make, class Write>
-void write_tiles(const std::vector<Tile>& tiles, std::size_t run, const Progress& progress, T FrameTiles::Worker::*kept,
-                 const Make& make, const Write& write) {
-    ProgressMeter meter(progress, tiles.size());
+void write_tiles(FrameTiles& frame, const std::vector<Tile>& tiles, std::size_t run, const Progress& progress,
+                 T FrameTiles::Worker::*kept, const Make& make, const Write& write) {
+    const std::vector<Tile> to_decide = frame.tiles_to_decide(tiles);
+    ProgressMeter meter(progress, to_decide.size() + tiles.size());
     Pool<FrameTiles::Worker> workers;
+    decide(frame, to_decide, workers, meter);
     std::vector<T> done(std::min(run, tiles.size()));
     for (std::size_t first = 0; first < tiles.size(); first += run) {
         const std::size_t count = std::min(run, tiles.size() - first);
@@ -126,7 +137,7 @@ void Renderer::render_shard(const RenderSettings& settings, double number, const
     run(in_cells(settings), number, stats, [&](FrameTiles& frame) {
         TileOutput output(StreamKind::kShard, head_of(shard, frame.info(), frame.view(), settings, metadata), out);
         write_tiles(
-            tiles_of(frame.tiles(), shard), kRun, progress, &FrameTiles::Worker::sums,
+            frame, tiles_of(frame.tiles(), shard), kRun, progress, &FrameTiles::Worker::sums,
             [&](const Tile& tile, FrameTiles::Worker& worker) { frame.render(tile, worker); },
             [&](const TileSums& sums) { write_sums(sums, output); });
         output.finish();
@@ -138,8 +149,8 @@ void Renderer::render_samples(const RenderSettings& settings, double number, con
     run(in_cells(settings), number, stats, [&](FrameTiles& frame) {
         TileOutput output(StreamKind::kSamples, head_of({}, frame.info(), frame.view(), settings, metadata), out);
         write_tiles(
-            frame.tiles(), std::max<std::size_t>(1, kRun / static_cast<std::size_t>(settings.image.spp)), progress,
-            &FrameTiles::Worker::samples,
+            frame, frame.tiles(), std::max<std::size_t>(1, kRun / static_cast<std::size_t>(settings.image.spp)),
+            progress, &FrameTiles::Worker::samples,
             [&](const Tile& tile, FrameTiles::Worker& worker) { frame.store(tile, worker); },
             [&](const std::vector<StoredSample>& samples) { output.write(samples); });
         output.finish();

@@ -1,9 +1,12 @@
 #include "sample/net.h"
 
+#include <vector>
+
 namespace pentaprism {
 namespace {
 
-constexpr int kDigits = 6;  // 4^6 = 4096 points
+constexpr int kDigits = 6;
+constexpr std::uint32_t kPoints = 1u << 2 * kDigits;
 
 // GF(4) = {0, 1, w, w + 1} as 0, 1, 2, 3: addition is xor.
 constexpr std::uint8_t kProduct[4][4] = {{0, 0, 0, 0}, {0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}};
@@ -25,17 +28,28 @@ std::uint8_t digit(std::uint32_t index, int r, std::uint8_t alpha) {
 constexpr std::uint8_t kSwapped[4] = {0, 2, 1, 3};  // (high, low) -> (low, high)
 constexpr std::uint8_t kSummed[4] = {0, 2, 3, 1};   // (high, low) -> (high + low, high)
 
-}  // namespace
+using Point = std::array<std::uint32_t, 4>;
 
-std::array<std::uint32_t, 4> net_point(std::uint32_t index) {
+Point make_point(std::uint32_t index) {
     constexpr std::uint8_t kAlpha[4] = {2, 3, 0, 1};  // x, y, u, v
-    std::array<std::uint32_t, 4> point{};
+    Point point{};
     for (int dimension = 0; dimension < 4; ++dimension) {
         const std::uint8_t* relabel = dimension % 2 == 0 ? kSwapped : kSummed;
         for (int r = 0; r < kDigits; ++r)
             point[dimension] |= static_cast<std::uint32_t>(relabel[digit(index, r, kAlpha[dimension])]) << (30 - 2 * r);
     }
     return point;
+}
+
+}  // namespace
+
+Point net_point(std::uint32_t index) {
+    static const std::vector<Point> points = [] {
+        std::vector<Point> all(kPoints);
+        for (std::uint32_t i = 0; i < kPoints; ++i) all[i] = make_point(i);
+        return all;
+    }();
+    return points[index % kPoints];
 }
 
 std::uint32_t reverse_bits(std::uint32_t x) {

@@ -14,6 +14,8 @@ namespace {
 
 // Cosine of face and light below which points are lifted to the smooth surface, little by little.
 constexpr float kGrazing = 0.1f;
+// Cosine between a facet and the normals at its corners: up to here it stands for a smooth surface, from here not.
+constexpr float kSmooth = 0.5f, kSpread = 0.25f;
 
 constexpr float kNegligible = 1.0f / 512.0f;
 
@@ -176,17 +178,18 @@ void ShadedTriangle::barycentrics_of_quarters(const ShadingCell& cell, glm::vec3
 
 // How far the smooth surface bulges out over the facet, along the smooth normal: a parabola over each edge that follows
 // the turn of the normals along it (as high as Hanika 2021, Hacking the Shadow Terminator, lifts the point, but nothing
-// where normals are merely tilted, as on leaves that are to look like a ball). Facets that are turned away from the
-// light though their smooth normals are not do not shadow themselves.
+// where normals merely spread, as on leaves that are to look like a ball: those lean far from the facet). Facets that
+// are turned away from the light though their smooth normals are not do not shadow themselves.
 glm::vec3 ShadedTriangle::smooth_offset(const glm::vec3& b, const glm::vec3& normal, bool front) const {
-    float height = 0.0f;
+    float height = 0.0f, least = 1.0f;
     for (int i = 0; i < 3; ++i) {
+        least = std::min(least, glm::dot(part_.normals[vertices_[i]], face_normal_));
         const std::uint32_t from = vertices_[i], to = vertices_[(i + 1) % 3];
         const float turn =
             glm::dot(part_.normals[to] - part_.normals[from], part_.positions[to] - part_.positions[from]);
         height += b[i] * b[(i + 1) % 3] * std::max(0.0f, front ? turn : -turn);
     }
-    return height * normal;
+    return std::clamp((least - kSpread) / (kSmooth - kSpread), 0.0f, 1.0f) * height * normal;
 }
 
 namespace {
@@ -296,15 +299,19 @@ void ShadedTriangle::shade(const glm::vec3& barycentrics, bool front, const Shad
     const float roughness = material.roughness * metallic_roughness.y;
     const glm::vec3 position = interpolate(part_.positions, vertices_, b);
     const glm::vec3 to_eye = scene_.to_eye(position), face = front ? face_normal_ : -face_normal_;
-    const auto seen = [&](const glm::vec3& n) {
+    const auto towards_eye = [&](const glm::vec3& n) {
         const glm::vec3 unit = normalized_or(n, to_eye);
-        return visible_normal(front ? unit : -unit, face, to_eye);
+        return front ? unit : -unit;
     };
+    const auto seen = [&](const glm::vec3& n) { return visible_normal(towards_eye(n), face, to_eye); };
     const bool mapped = !part_.tangents.empty();
-    const glm::vec3 smooth = seen(interpolate(part_.normals, vertices_, b));
-    const glm::vec3 normal = bound.normal.pyramid && mapped
-                                 ? seen(mapped_normal(b, decoded_normal(look_up(bound.normal), material.normal_scale)))
-                                 : smooth;
+    const glm::vec3 smooth_given = towards_eye(interpolate(part_.normals, vertices_, b));
+    const glm::vec3 smooth = visible_normal(smooth_given, face, to_eye);
+    const glm::vec3 given =
+        bound.normal.pyramid && mapped
+            ? towards_eye(mapped_normal(b, decoded_normal(look_up(bound.normal), material.normal_scale)))
+            : smooth_given;
+    const glm::vec3 normal = visible_normal(given, face, to_eye);
 
     DielectricReflection reflection;
     if (material.ior != 1.5f || material.specular != 1.0f || material.specular_color != glm::vec3(1.0f) ||
@@ -339,6 +346,7 @@ void ShadedTriangle::shade(const glm::vec3& barycentrics, bool front, const Shad
     for (std::size_t i = 0; i < lighting.lights.size(); ++i) {
         const Incoming from = incoming(lighting.lights[i], position);
         if (from.irradiance == glm::vec3(0.0f)) continue;
+        if (normal != given && glm::dot(given, from.to_light) <= 0.0f) continue;  // bending must not reach the light
         const glm::vec3 reflected = from.irradiance * surface.reflected(from.to_light);
         if (reflected == glm::vec3(0.0f)) continue;
         if (!scene_.shadows().casts(i)) {

@@ -8,6 +8,7 @@
 #include "shade/shaded_part.glsl"
 
 const float kGrazing = 0.1, kNegligible = 1.0 / 512.0;
+const float kSmooth = 0.5, kSpread = 0.25;
 const int kFilterOff = 0, kFilterPixel = 1, kFilterFull = 2;  // TextureFilter
 
 // Of BoundMaterial: which of its textures.
@@ -130,13 +131,14 @@ vec3 texture_footprint(ShadedTriangle t, Projection p, vec3 barycentrics, vec2 c
 }
 
 vec3 smooth_offset(ShadedTriangle t, vec3 b, vec3 normal, bool front) {
-    float height = 0.0;
+    float height = 0.0, least = 1.0;
     for (int i = 0; i < 3; ++i) {
         int next = (i + 1) % 3;
+        least = min(least, dot(t.normals.at[i].xyz, t.face_normal));
         float turn = dot(t.normals.at[next].xyz - t.normals.at[i].xyz, t.positions.at[next].xyz - t.positions.at[i].xyz);
         height += b[i] * b[next] * max(0.0, front ? turn : -turn);
     }
-    return height * normal;
+    return clamp((least - kSpread) / (kSmooth - kSpread), 0.0, 1.0) * height * normal;
 }
 
 vec3 decoded_normal(vec4 texel, float scale) {
@@ -269,9 +271,9 @@ float shadow_texel(vec3 position) {
     return float(w / focal_length * max(1.0lf, 0.25lf * blur));
 }
 
-vec3 seen_normal(vec3 n, bool front, vec3 face, vec3 to_eye) {
+vec3 normal_towards_eye(vec3 n, bool front, vec3 to_eye) {
     vec3 unit = normalized_or(n, to_eye);
-    return visible_normal(front ? unit : -unit, face, to_eye);
+    return front ? unit : -unit;
 }
 
 float brightness(vec3 c) {
@@ -317,7 +319,7 @@ void shade_point(uint index, uint first_share) {
     vec3 to_eye = eye_direction(position), face = front ? t.face_normal : -t.face_normal;
     float coat = materials[m].layered != 0 ? materials[m].coat * look_up(kCoat).x : 0.0;
     // Without a map, with it, and of the coat.
-    vec3 normals[3];
+    vec3 normals[3], given;
     int normals_used = coat > 0.0 ? 3 : 2;
     for (int k = 0; k < normals_used; ++k) {
         vec3 n = interpolate(t.normals, b).xyz;
@@ -325,7 +327,9 @@ void shade_point(uint index, uint first_share) {
         if (k > 0 && t.part.tangents >= 0 && has_texture(m, map))
             n = mapped_normal(t, b, decoded_normal(look_up(map), k == 1 ? materials[m].normal_scale
                                                                         : materials[m].coat_normal_scale));
-        normals[k] = seen_normal(n, front, face, to_eye);
+        n = normal_towards_eye(n, front, to_eye);
+        if (k == 1) given = n;
+        normals[k] = visible_normal(n, face, to_eye);
     }
     vec3 even = normals[0], normal = normals[1];
 
@@ -355,6 +359,7 @@ void shade_point(uint index, uint first_share) {
         PosedLight light = lights[i];
         Incoming from = incoming(light, position);
         if (from.irradiance == vec3(0.0)) continue;
+        if (normal != given && dot(given, from.to_light) <= 0.0) continue;  // bending must not reach the light
         vec3 reflected = from.irradiance * surface_reflected(surface, from.to_light);
         if (reflected == vec3(0.0)) continue;
         if (light.share < 0) {

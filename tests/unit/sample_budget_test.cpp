@@ -58,25 +58,46 @@ TEST(SampleBudget, LevelsDoubleFromTheLeastToTheMost) {
     image.spp = 16, image.max_spp = 100, image.target_error = 0.01;
     const SampleBudget budget(image, Sampler::kIndependent, {});
     EXPECT_EQ(budget.levels(), (std::vector<int>{16, 32, 64, 100}));
-    // Of random samples: squared error over number.
+    // Of random samples, whose squared error is over their number: the root of 64 times what the target takes.
     EXPECT_EQ(budget.level_for(0.0), 0u);
-    EXPECT_EQ(budget.level_for(0.99e-4 * 16), 0u);
-    EXPECT_EQ(budget.level_for(1.01e-4 * 16), 1u);
+    EXPECT_EQ(budget.level_for(0.99e-4 * 4), 0u);
+    EXPECT_EQ(budget.level_for(1.01e-4 * 4), 1u);
+    EXPECT_EQ(budget.level_for(0.99e-4 * 64), 2u);
     EXPECT_EQ(budget.level_for(1.01e-4 * 64), 3u);
     EXPECT_EQ(budget.level_for(1.0), 3u);
     image.max_spp = 16;
     EXPECT_EQ(SampleBudget(image, Sampler::kStratified, {}).levels(), std::vector<int>{16});
 }
 
+TEST(SampleBudget, BlocksMoveUpALevelWhereThatCostsLessThanAPass) {
+    ImageSettings image;
+    image.spp = 16, image.max_spp = 128, image.target_error = 0.01;
+    const SampleBudget budget(image, Sampler::kStratified, {});
+    using Levels = std::vector<std::size_t>;
+    const auto taken = [&](const std::vector<int>& blocks, double pass) { return budget.levels_to_take(blocks, pass); };
+    EXPECT_EQ(taken({10, 10, 10, 10}, 0.0), (Levels{0, 1, 2, 3}));
+    EXPECT_EQ(taken({10, 10, 10, 10}, 1e9), (Levels{3, 3, 3, 3}));
+    // Ten blocks of sixteen pixels: 16 samples more for each, or 32 or 64 more.
+    EXPECT_EQ(taken({10, 10, 10, 10}, 2559.0), (Levels{0, 1, 2, 3}));
+    EXPECT_EQ(taken({10, 10, 10, 10}, 2561.0), (Levels{1, 1, 2, 3}));
+    EXPECT_EQ(taken({0, 10, 10, 10}, 5121.0), (Levels{0, 2, 2, 3}));
+    // A level that no block wants costs no pass, and one above all that are wanted serves none.
+    const Levels lowest = taken({64, 0, 0, 0}, 1e9), second = taken({10, 30, 0, 0}, 1e9);
+    EXPECT_EQ(lowest[0], 0u);
+    EXPECT_EQ(second[0], 1u);
+    EXPECT_EQ(second[1], 1u);
+}
+
 TEST(SampleBudget, EachBlockIsThatOfAPictureWithItsNumberOfSamples) {
     const Scene scene = flying_square();
-    RenderSettings settings = settings_of(0.03);
+    RenderSettings settings = settings_of(0.01);
+    settings.image.width = 203, settings.image.height = 130, settings.image.max_spp = 200;
     RenderStats stats;
     const Picture picture = picture_of(scene, settings, &stats);
     const std::size_t pixels = picture.z.size();
     std::map<int, std::size_t> pixels_of_level;
     for (std::size_t i = 0; i < pixels; ++i) ++pixels_of_level[static_cast<int>(picture.aovs[i])];
-    ASSERT_GE(pixels_of_level.size(), 4u);
+    ASSERT_GE(pixels_of_level.size(), 3u);
     EXPECT_GT(pixels_of_level[4], pixels / 2);  // the even wall
     std::int64_t samples = 0;
     for (const auto& [spp, count] : pixels_of_level) {

@@ -144,6 +144,43 @@ TEST(Shade, TheBackOfATwoSidedSurfaceIsLitFromItsOwnSide) {
     EXPECT_NEAR(pixel(draw(scene, settings_of(1)), 32, 32).x, 1.0f, 0.05f);
 }
 
+// Normals of leaves that are to look like a ball may lean beyond the horizon. They are bent back for what is mirrored,
+// but a light that they turn from must not shine on them.
+TEST(Shade, ALightBehindTheGivenNormalAddsNothing) {
+    const auto red = [](const glm::vec3& normal, double sun_angle) {
+        Scene scene = scene_with_camera();
+        scene.materials = {matte(glm::vec3(1.0f))};
+        Primitive leaf = square(3.0f, -2.0f, 0);
+        leaf.normals.assign(4, glm::normalize(normal));
+        add_mesh(scene, {leaf});
+        add_sun(scene, std::numbers::pi_v<float>, sun_angle);
+        return pixel(draw(scene, settings_of(1)), 32, 32).x;
+    };
+    EXPECT_GT(red({0.8f, 0.0f, 0.6f}, 0.0), 0.3f);
+    EXPECT_EQ(red({0.8f, 0.0f, -0.6f}, 0.0), 0.0f);
+    EXPECT_GT(red({0.8f, 0.0f, -0.6f}, 1.2), 0.1f);  // the light stands on the side to which they lean
+}
+
+// The surface that stands for a rounded one is lifted for shadows; leaves whose normals merely spread are not.
+TEST(Shade, OnlyFacetsAlongTheSmoothSurfaceAreLiftedOverTheirShadows) {
+    const auto height = [](float along) {
+        Scene scene = scene_with_camera();
+        scene.materials = {matte(glm::vec3(1.0f))};
+        Primitive facet = square(1.0f, -2.0f, 0);
+        for (int i = 0; i < 4; ++i)
+            facet.normals[i] = glm::normalize(glm::vec3(glm::vec2(facet.positions[i]) / std::sqrt(2.0f), along));
+        add_mesh(scene, {facet});
+        add_sun(scene, 1.0f, 1.6);  // from just below the facet's horizon
+        const Frame frame = frame_of(scene, settings_of(1));
+        const ShadingScene shading(frame, {});
+        LitColor lit;
+        ShadedTriangle(shading, 0, 1).shade({0.3f, 0.3f, 0.4f}, true, ShadingCell{}, lit);
+        return lit.shadowed.empty() ? -1.0f : glm::length(lit.shadowed[0].offset);
+    };
+    EXPECT_GT(height(1.5f), 0.1f);
+    EXPECT_EQ(height(0.2f), 0.0f);
+}
+
 TEST(Shade, WithoutLightsTheDefaultOnesShowEverySide) {
     Scene scene = scene_with_camera();
     scene.materials = {matte(glm::vec3(0.5f))};
