@@ -252,9 +252,11 @@ class Lit {
                         load(f, batch_.color, first);
         if (material_.unlit) return store(f, base, out_.rest, first);
 
-        const V3 metallic_roughness = texel(f, bound.metallic_roughness, texels_.metallic_roughness, first);
-        const Vec metallic = hn::Mul(hn::Set(f, material_.metallic), metallic_roughness.z);
-        const Vec roughness = hn::Mul(hn::Set(f, material_.roughness), metallic_roughness.y);
+        Vec metallic = hn::Set(f, material_.metallic), roughness = hn::Set(f, material_.roughness);
+        if (bound.metallic_roughness.pyramid) {
+            roughness = hn::Mul(roughness, hn::Load(f, texels_.metallic_roughness[0] + first));
+            metallic = hn::Mul(metallic, hn::Load(f, texels_.metallic_roughness[1] + first));
+        }
         const V3 position = load(f, batch_.position, first), eye = to_eye(f, position);
         const V3 face = load(f, batch_.face, first);
         const V3 smooth = seen(f, load(f, batch_.normal, first), face, eye, first);
