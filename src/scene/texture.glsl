@@ -18,12 +18,10 @@ struct BoundTexture {
     int nearest, mipmapped;
 };
 
-layout(std430, binding = 4) restrict readonly buffer Pyramids {
-    Pyramid pyramids[];
-};
+layout(std430, binding = 4) restrict readonly buffer Pyramids { Pyramid pyramids[]; };
 layout(std430, binding = 6) restrict readonly buffer Tables {
-    vec4 harmonics[9];         // of the environment
-    ivec4 sky_levels[8];       // of the environment: width, height, first texel
+    vec4 harmonics[9];      // of the environment
+    ivec4 sky_levels[8];    // of the environment: width, height, first texel
     float value_of_code[512];  // of data, of colours
     vec2 specular_albedos[32 * 32];
     float sheen_albedos[16 * 16];
