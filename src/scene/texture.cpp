@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 
 #include "base/float4.h"
 #include "base/parallel.h"
@@ -117,12 +118,20 @@ Pyramid::Pyramid(const Image& image, Encoding encoding, bool weight_by_alpha)
     : color_of_code_(codes_of(encoding).data()) {
     const std::size_t texels = static_cast<std::size_t>(std::max(0, image.width)) * std::max(0, image.height);
     if (texels == 0 || image.texels.size() < 4 * texels) {
-        levels_.push_back({1, 1, {255, 255, 255, 255}});
+        texels_ = {0xffffffffu};
+        levels_.emplace_back();
         return;
     }
-    levels_.push_back({image.width, image.height, image.texels});
-    while (levels_.back().width > 1 || levels_.back().height > 1)
-        levels_.push_back(halved(levels_.back(), weight_by_alpha));
+    levels_.push_back({image.width, image.height, 0});
+    std::size_t all = texels;
+    while (levels_.back().width > 1 || levels_.back().height > 1) {
+        const Level& fine = levels_.back();
+        levels_.push_back({std::max(1, fine.width / 2), std::max(1, fine.height / 2), all});
+        all += static_cast<std::size_t>(levels_.back().width) * levels_.back().height;
+    }
+    texels_.resize(all);
+    std::memcpy(texels_.data(), image.texels.data(), 4 * texels);
+    for (std::size_t i = 1; i < levels_.size(); ++i) halve(levels_[i - 1], levels_[i], weight_by_alpha);
 
     bool opaque = true;
     for (std::size_t i = 0; i < texels && opaque; ++i) opaque = image.texels[4 * i + 3] == 255;
@@ -131,13 +140,11 @@ Pyramid::Pyramid(const Image& image, Encoding encoding, bool weight_by_alpha)
     for (std::size_t i = 0; i < texels; ++i) opacity_[i] = image.texels[4 * i + 3];
 }
 
-Pyramid::Level Pyramid::halved(const Level& fine, bool weight_by_alpha) const {
+void Pyramid::halve(const Level& fine, const Level& coarse, bool weight_by_alpha) {
     const bool srgb = color_of_code_ == codes_of(Encoding::kSrgb).data();
     const Codes& borders = borders_of(srgb ? Encoding::kSrgb : Encoding::kLinear);
     const Codes& alpha_borders = borders_of(Encoding::kLinear);
-    Level coarse{std::max(1, fine.width / 2), std::max(1, fine.height / 2), {}};
-    coarse.texels.resize(4 * static_cast<std::size_t>(coarse.width) * coarse.height);
-    std::uint8_t* out = coarse.texels.data();
+    std::uint8_t* out = reinterpret_cast<std::uint8_t*>(&texels_[coarse.first]);
     for (int y = 0; y < coarse.height; ++y) {
         const Taps rows = taps_of(fine.height, y);
         for (int x = 0; x < coarse.width; ++x, out += 4) {
@@ -145,7 +152,7 @@ Pyramid::Level Pyramid::halved(const Level& fine, bool weight_by_alpha) const {
             glm::vec4 sum(0.0f);      // all texels alike
             glm::vec3 covered(0.0f);  // colours by opacity
             for (int j = 0; j < rows.count; ++j) {
-                const std::uint8_t* row = &fine.texels[4 * (static_cast<std::size_t>(rows.first + j) * fine.width)];
+                const std::uint8_t* row = bytes_of(fine) + 4 * (static_cast<std::size_t>(rows.first + j) * fine.width);
                 for (int i = 0; i < columns.count; ++i) {
                     const glm::vec4 value = decode(row + 4 * (columns.first + i));
                     const float weight = rows.weight[j] * columns.weight[i];
@@ -158,7 +165,6 @@ Pyramid::Level Pyramid::halved(const Level& fine, bool weight_by_alpha) const {
             out[3] = encode(alpha_borders, sum.w);
         }
     }
-    return coarse;
 }
 
 glm::vec4 Pyramid::decode(const std::uint8_t* texel) const {
@@ -167,13 +173,13 @@ glm::vec4 Pyramid::decode(const std::uint8_t* texel) const {
 
 glm::vec4 Pyramid::texel(int level, int x, int y) const {
     const Level& from = levels_[level];
-    return decode(&from.texels[4 * (static_cast<std::size_t>(y) * from.width + x)]);
+    return decode(bytes_of(from) + 4 * (static_cast<std::size_t>(y) * from.width + x));
 }
 
 glm::vec4 Pyramid::bilinear(const Level& level, const TextureRef& ref, glm::vec2 uv) const {
     const Between x = between(ref.wrap_s, uv.x, level.width), y = between(ref.wrap_t, uv.y, level.height);
-    const std::uint8_t* upper = &level.texels[4 * (static_cast<std::size_t>(y.first) * level.width)];
-    const std::uint8_t* lower = &level.texels[4 * (static_cast<std::size_t>(y.second) * level.width)];
+    const std::uint8_t* upper = bytes_of(level) + 4 * (static_cast<std::size_t>(y.first) * level.width);
+    const std::uint8_t* lower = bytes_of(level) + 4 * (static_cast<std::size_t>(y.second) * level.width);
     const auto lanes = [this](const std::uint8_t* t) {
         return Float4{color_of_code_[t[0]], color_of_code_[t[1]], color_of_code_[t[2]], t[3] * (1.0f / 255.0f)};
     };
@@ -186,7 +192,7 @@ glm::vec4 Pyramid::bilinear(const Level& level, const TextureRef& ref, glm::vec2
 
 glm::vec4 Pyramid::nearest(const Level& level, const TextureRef& ref, glm::vec2 uv) const {
     const int x = texel_at(ref.wrap_s, uv.x, level.width), y = texel_at(ref.wrap_t, uv.y, level.height);
-    return decode(&level.texels[4 * (static_cast<std::size_t>(y) * level.width + x)]);
+    return decode(bytes_of(level) + 4 * (static_cast<std::size_t>(y) * level.width + x));
 }
 
 glm::vec4 Pyramid::sample(const TextureRef& ref, glm::vec2 uv, float level) const {
@@ -200,7 +206,7 @@ glm::vec4 Pyramid::sample(const TextureRef& ref, glm::vec2 uv, float level) cons
 }
 
 float Pyramid::alpha(const TextureRef& ref, glm::vec2 uv) const {
-    if (opacity_.empty()) return levels_[0].texels[3] * (1.0f / 255.0f);
+    if (opacity_.empty()) return bytes_of(levels_[0])[3] * (1.0f / 255.0f);
     const Level& level = levels_[0];
     if (ref.nearest) {
         const int x = texel_at(ref.wrap_s, uv.x, level.width), y = texel_at(ref.wrap_t, uv.y, level.height);

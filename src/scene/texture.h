@@ -41,16 +41,23 @@ class Pyramid {
 
     /// The same of one texel of level 0, as stored.
     std::uint8_t opacity_code(int x, int y) const {
-        return opacity_.empty() ? levels_[0].texels[3] : opacity_[static_cast<std::size_t>(y) * width() + x];
+        return opacity_.empty() ? bytes_of(levels_[0])[3] : opacity_[static_cast<std::size_t>(y) * width() + x];
     }
 
     /// All of them, row by row; null if every texel of level 0 has the same opacity, that of opacity_code(0, 0).
     const std::uint8_t* opacity_codes() const { return opacity_.empty() ? nullptr : opacity_.data(); }
 
     /// The texels of a level as they are stored: RGBA codes, row by row; and its size.
-    std::span<const std::uint8_t> codes(int level) const { return levels_[level].texels; }
+    std::span<const std::uint8_t> codes(int level) const {
+        const Level& from = levels_[level];
+        return {bytes_of(from), 4 * static_cast<std::size_t>(from.width) * from.height};
+    }
     int width(int level) const { return levels_[level].width; }
     int height(int level) const { return levels_[level].height; }
+
+    /// The same of all levels, one after the other, R in the lowest byte; and where a level begins.
+    std::span<const std::uint32_t> texels() const { return texels_; }
+    std::size_t first_texel(int level) const { return levels_[level].first; }
 
     /// What each code of R, G and B stands for: 256 linear values. A stands for code / 255.
     std::span<const float, 256> color_of_code() const { return std::span<const float, 256>(color_of_code_, 256); }
@@ -61,14 +68,18 @@ class Pyramid {
   private:
     struct Level {
         int width = 1, height = 1;
-        std::vector<std::uint8_t> texels;
+        std::size_t first = 0;  // into texels_
     };
-    Level halved(const Level& fine, bool weight_by_alpha) const;
+    const std::uint8_t* bytes_of(const Level& level) const {
+        return reinterpret_cast<const std::uint8_t*>(&texels_[level.first]);
+    }
+    void halve(const Level& fine, const Level& coarse, bool weight_by_alpha);
     glm::vec4 decode(const std::uint8_t* texel) const;
     glm::vec4 bilinear(const Level& level, const TextureRef& ref, glm::vec2 uv) const;
     glm::vec4 nearest(const Level& level, const TextureRef& ref, glm::vec2 uv) const;
 
-    const float* color_of_code_;  // 256 entries
+    const float* color_of_code_;         // 256 entries
+    std::vector<std::uint32_t> texels_;  // bytes R, G, B, A
     std::vector<Level> levels_;
     std::vector<std::uint8_t>
         opacity_;  // level 0 alone, 1 byte a texel: a quarter of the cache; empty if all are opaque

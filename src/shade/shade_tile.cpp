@@ -15,17 +15,6 @@ constexpr int kSamplesPerChunk = 1 << 16;
 constexpr int kQuarters = QuarterColors::kQuarters;
 constexpr int kLookups = ShadowPoint::kLanes / kQuarters;  // of a quarter
 constexpr int kRoughLevel = 2;                             // 2^2 = kBlockSize
-constexpr float kBrightest = 0x1p20f;
-
-// Of four bits, how many are set. (The processor's own instruction is a call where the build does not assume it.)
-constexpr float kShareOfBits[16] = {0.0f,  0.25f, 0.25f, 0.5f,  0.25f, 0.5f,  0.5f,  0.75f,
-                                    0.25f, 0.5f,  0.5f,  0.75f, 0.5f,  0.75f, 0.75f, 1.0f};
-
-glm::vec4 contained(const glm::vec3& color) {
-    const auto one = [](float x) { return std::isfinite(x) ? std::clamp(x, 0.0f, kBrightest) : 0.0f; };
-    return {one(color.x), one(color.y), one(color.z), 1.0f};
-}
-
 void write_lane(const glm::vec3& barycentrics, int lane, ShadowPoint& out) {
     for (int k = 0; k < 3; ++k) out.barycentrics[k][lane] = barycentrics[k];
 }
@@ -83,6 +72,7 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
     scene_ = &scene;
     by_quarters_ = scene.shadows().move();
     shaded_ = 0;
+    waiting_.start(scene);
     clear(tile, samples.slots(), out.point_of_sample);
     out.colors.clear();
     const SampleVector* vectors = samples.cell(tile.cell_x(), tile.cell_y(), room_).data();
@@ -101,7 +91,6 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
             const Run run{shaded, triangle, samples_.places(i), samples_.pixels(i)};
             const bool cells = in_cells && (roughly || !shaded.is_sharp());
             seen_.see(triangle, run.places, cells ? &shaded.cells() : nullptr);
-            shadows_.start(scene.shadows(), triangle);
             if (cells) {
                 find_cells(run, out);
                 shade_cells(run, out);
@@ -110,6 +99,7 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
             }
         }
     }
+    waiting_.finish(out);
     return shaded_;
 }
 
@@ -123,6 +113,14 @@ void TileShader::shade_misses(const ShadingScene& scene, const SampleTable& samp
         samples_.collect(samples, tile, hits, block, std::min(block + blocks_per_chunk, kBlocksPerCell));
         shade_background(vectors, tile, out);
     }
+}
+
+WaitingPoint& TileShader::add_point(const Run& run, const glm::vec3& barycentrics, bool front, const ShadingCell& cell,
+                                    TileShade& out) {
+    ++shaded_;
+    WaitingPoint& point = waiting_.add(run.triangle.material(), run.triangle.surface(barycentrics, front, cell), out);
+    point.triangle = run.number;
+    return point;
 }
 
 // The samples of one pixel share a point, or none do; those that see the back are another point.
@@ -144,10 +142,11 @@ void TileShader::shade_pixels(const Run& run, const Tile& tile, TileShade& out) 
         for (int front = 0; front < 2; ++front) {
             const PointSamples& point = points[front];
             if (point.count == 0) continue;
-            ++shaded_;
-            run.triangle.shade(point.sum / static_cast<float>(point.count), front != 0, ShadingCell{}, lit_);
-            for (int q = 0; q < kQuarters; ++q) point.quarter[by_quarters_ ? q : 0].write(q, shadow_point_);
-            light_quarters(point.colors, seed_of(tile, pixel, static_cast<std::uint32_t>(front)), out);
+            const glm::vec3 b = point.sum / static_cast<float>(point.count);
+            WaitingPoint& waiting = add_point(run, b, front != 0, ShadingCell{}, out);
+            waiting.seed = seed_of(tile, pixel, static_cast<std::uint32_t>(front));
+            waiting.colors = point.colors;
+            for (int q = 0; q < kQuarters; ++q) point.quarter[by_quarters_ ? q : 0].write(q, waiting.shadow);
         }
     }
 }
@@ -174,43 +173,17 @@ void TileShader::find_cells(const Run& run, TileShade& out) {
 // Everything of a cell follows from the cell alone, so nothing depends on which tiles see parts of it.
 void TileShader::shade_cells(const Run& run, TileShade& out) {
     for (const SharedCell& shared : cells_) {
-        ++shaded_;
         const bool alone = shared.key.alone();
         const ShadingCell cell = alone ? ShadingCell{} : shared.key.cell();
         const glm::vec3 b = alone ? seen_.barycentrics(shared.first) : run.triangle.barycentrics_at(cell.centre);
-        run.triangle.shade(b, shared.key.front(), cell, lit_);
-        if (!lit_.shadowed.empty()) {
-            glm::vec3 parts[kLookups] = {b, b, b, b};
-            if (!alone) run.triangle.barycentrics_of_quarters(cell, parts);
-            for (int lane = 0; lane < ShadowPoint::kLanes; ++lane)
-                write_lane(parts[lane % kLookups], lane, shadow_point_);
-        }
-        light_quarters(shared.colors, mix(shared.key.place + mix(shared.key.kind + run.number)), out);
+        WaitingPoint& waiting = add_point(run, b, shared.key.front(), cell, out);
+        waiting.seed = mix(shared.key.place + mix(shared.key.kind + run.number));
+        waiting.colors = shared.colors;
+        if (!scene_->shadows().any()) continue;
+        glm::vec3 parts[kLookups] = {b, b, b, b};
+        if (!alone) run.triangle.barycentrics_of_quarters(cell, parts);
+        for (int lane = 0; lane < ShadowPoint::kLanes; ++lane) write_lane(parts[lane % kLookups], lane, waiting.shadow);
     }
-}
-
-// What shadows leave of a point's light in each quarter of the shutter that its samples see; where nothing moves one
-// colour serves all.
-void TileShader::light_quarters(const QuarterColors& colors, std::uint32_t seed, TileShade& out) {
-    glm::vec3 color[kQuarters];
-    for (glm::vec3& c : color) c = lit_.rest;
-    if (!lit_.shadowed.empty()) {
-        shadow_point_.position = lit_.position;
-        shadow_point_.texel = scene_->shadow_texel(lit_.position);
-        shadow_point_.quarters = 0;
-        for (int q = 0; q < kQuarters; ++q)
-            if (!by_quarters_ || colors.color[q] != kBackground) shadow_point_.quarters |= 1u << q;
-        for (const LitColor::Share& share : lit_.shadowed) {
-            shadow_point_.offset = share.offset;
-            const std::uint32_t lit = shadows_.lit(share.light, shadow_point_, seed + 8 * share.light);
-            float part[kQuarters];
-            for (int q = 0; q < kQuarters; ++q) part[q] = kShareOfBits[lit >> kLookups * q & 15u];
-            if (!by_quarters_) part[0] = 0.25f * (part[0] + part[1] + part[2] + part[3]);
-            for (int q = 0; q < kQuarters; ++q) color[q] += part[q] * share.color;
-        }
-    }
-    for (int q = 0; q < kQuarters; ++q)
-        if (colors.color[q] != kBackground) out.colors[colors.color[q]] = contained(color[q]);
 }
 
 // The mean of what a pixel's misses see of the surroundings, each along its own ray.

@@ -15,23 +15,9 @@
 #include "shade/shading_scene.h"
 #include "shade/tile_samples.h"
 #include "shade/tile_shade.h"
+#include "shade/waiting_points.h"
 
 namespace pentaprism {
-
-/// Where a point's colours are in TileShade::colors: one for each quarter of the shutter in which it is seen.
-struct QuarterColors {
-    static constexpr int kQuarters = ShadowMap::kSamples;
-    std::uint32_t color[kQuarters] = {kBackground, kBackground, kBackground, kBackground};
-
-    /// Makes the place when first asked.
-    std::uint32_t at(int quarter, TileShade& out) {
-        if (color[quarter] == kBackground) {
-            color[quarter] = static_cast<std::uint32_t>(out.colors.size());
-            out.colors.emplace_back();
-        }
-        return color[quarter];
-    }
-};
 
 /// Keeps its memory between tiles; one for each thread. Results do not depend on the tile's size nor on what was shaded
 /// before.
@@ -64,7 +50,8 @@ class TileShader {
     void shade_pixels(const Run& run, const Tile& tile, TileShade& out);
     void find_cells(const Run& run, TileShade& out);
     void shade_cells(const Run& run, TileShade& out);
-    void light_quarters(const QuarterColors& colors, std::uint32_t seed, TileShade& out);
+    WaitingPoint& add_point(const Run& run, const glm::vec3& barycentrics, bool front, const ShadingCell& cell,
+                            TileShade& out);
     void shade_background(const SampleVector* samples, const Tile& tile, TileShade& out);
     int quarter_of(std::size_t sample) const {
         const int quarter = static_cast<int>(seen_.time(sample) * QuarterColors::kQuarters);
@@ -73,9 +60,7 @@ class TileShader {
 
     const ShadingScene* scene_ = nullptr;
     bool by_quarters_ = false;  // colours change while the shutter is open
-    LitColor lit_;
-    ShadowPoint shadow_point_;
-    ShadowsOnTriangle shadows_;
+    WaitingPoints waiting_;
     TileSamples samples_;
     SeenSamples seen_;
     std::int64_t shaded_ = 0;

@@ -27,8 +27,12 @@ struct BoundMaterial {
     BoundTexture textures[kTextures];
 };
 
-layout(std430, binding = 3) restrict readonly buffer Materials { BoundMaterial materials[]; };
-layout(std430, binding = 7) restrict buffer Shares { Share shares[]; };  // [point of the dispatch][light that casts]
+layout(std430, binding = 3) restrict readonly buffer Materials {
+    BoundMaterial materials[];
+};
+layout(std430, binding = 7) restrict buffer Shares {
+    Share shares[];
+};  // [point of the dispatch][light that casts]
 
 uniform bool orthographic;
 uniform vec4 backwards;  // against the direction of view
@@ -135,7 +139,8 @@ vec3 smooth_offset(ShadedTriangle t, vec3 b, vec3 normal, bool front) {
     for (int i = 0; i < 3; ++i) {
         int next = (i + 1) % 3;
         least = min(least, dot(t.normals.at[i].xyz, t.face_normal));
-        float turn = dot(t.normals.at[next].xyz - t.normals.at[i].xyz, t.positions.at[next].xyz - t.positions.at[i].xyz);
+        float turn =
+            dot(t.normals.at[next].xyz - t.normals.at[i].xyz, t.positions.at[next].xyz - t.positions.at[i].xyz);
         height += b[i] * b[next] * max(0.0, front ? turn : -turn);
     }
     return clamp((least - kSpread) / (kSmooth - kSpread), 0.0, 1.0) * height * normal;
@@ -246,9 +251,10 @@ void look_up_textures(ShadedTriangle t, vec3 barycentrics, vec3 b) {
             if ((t.part.coordinate_sets >> set & 1) == 0) continue;
             bool first = set == 0;
             uv[set] = first ? here.xy : here.zw;
-            footprints[set] = texture_footprint(t, p, barycentrics,
-                                                vec2[3](first ? corner[0].xy : corner[0].zw, first ? corner[1].xy : corner[1].zw,
-                                                        first ? corner[2].xy : corner[2].zw));
+            footprints[set] =
+                texture_footprint(t, p, barycentrics,
+                                  vec2[3](first ? corner[0].xy : corner[0].zw, first ? corner[1].xy : corner[1].zw,
+                                          first ? corner[2].xy : corner[2].zw));
         }
     }
     for (int i = 0; i < used; ++i) {
@@ -325,8 +331,9 @@ void shade_point(uint index, uint first_share) {
         vec3 n = interpolate(t.normals, b).xyz;
         int map = k == 1 ? kNormal : kCoatNormal;
         if (k > 0 && t.part.tangents >= 0 && has_texture(m, map))
-            n = mapped_normal(t, b, decoded_normal(look_up(map), k == 1 ? materials[m].normal_scale
-                                                                        : materials[m].coat_normal_scale));
+            n = mapped_normal(
+                t, b,
+                decoded_normal(look_up(map), k == 1 ? materials[m].normal_scale : materials[m].coat_normal_scale));
         n = normal_towards_eye(n, front, to_eye);
         if (k == 1) given = n;
         normals[k] = visible_normal(n, face, to_eye);

@@ -11,29 +11,19 @@
 
 #include "shade/seen_samples.h"
 #include "shade/shading_scene.h"
+#include "shade/surface_point.h"
 
 namespace pentaprism {
-
-/// A point's colour, with what each light that casts shadows would add if nothing stood in its way.
-struct LitColor {
-    struct Share {
-        std::uint32_t light;
-        glm::vec3 color;
-        glm::vec3 offset;  ///< from the facet to the smooth surface it stands for; only where the light grazes it
-    };
-    glm::vec3 rest{0.0f};
-    std::vector<Share> shadowed;
-    glm::vec3 position{0.0f};  ///< relative to the eye, at mid-shutter
-};
 
 class ShadedTriangle {
   public:
     /// `spp`: samples per pixel of the picture.
     ShadedTriangle(const ShadingScene& scene, std::uint32_t triangle, int spp);
 
-    /// Linear colour of the point with these barycentrics (inside the triangle, sum 1) seen from the front or the back.
-    /// The texture is averaged over the cell's sides.
-    void shade(const glm::vec3& barycentrics, bool front, const ShadingCell& cell, LitColor& out) const;
+    /// The point with these barycentrics (inside the triangle, sum 1) seen from the front or the back. Its textures are
+    /// averaged over the cell's sides.
+    SurfacePoint surface(const glm::vec3& barycentrics, bool front, const ShadingCell& cell) const;
+    const BoundMaterial& material() const { return *part_.material; }
 
     /// For SeenSamples; only of use where the rate asks for cells.
     const CellTriangle& cells() const { return cells_; }
@@ -59,8 +49,7 @@ class ShadedTriangle {
         glm::dvec3 coc;               // c of each corner
     };
     void project(std::uint32_t triangle);
-    glm::vec3 mapped_normal(const glm::vec3& barycentrics, const glm::vec3& map) const;
-    glm::vec3 smooth_offset(const glm::vec3& barycentrics, const glm::vec3& normal, bool front) const;
+    float bulge(const glm::vec3& barycentrics, bool front) const;
     TextureFootprint footprint(const glm::vec3& barycentrics, int set, const ShadingCell& cell) const;
 
     const ShadingScene& scene_;
@@ -71,6 +60,8 @@ class ShadedTriangle {
     Projection projection_;
     CellTriangle cells_;
     glm::vec3 face_normal_{0.0f};  // unit, towards the front
+    float turns_[3];               // of the normals along each edge
+    float smoothness_;             // 1: a facet of a smooth surface, 0: its normals merely spread
 };
 
 }  // namespace pentaprism

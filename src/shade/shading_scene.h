@@ -55,6 +55,8 @@ class ShadingScene {
     const Frame& frame() const { return frame_; }
     const std::vector<ShadedPart>& parts() const { return parts_; }  ///< as Frame::parts
     const ShadedPart& part_of(std::uint32_t triangle) const { return parts_[frame_.part_of[triangle]]; }
+    /// Of the scene, then the default one; those of the parts are among them.
+    const std::vector<BoundMaterial>& materials() const { return materials_; }
     const ShadingOptions& options() const { return options_; }
     const Lighting& lighting() const { return lighting_; }
     const Shadows& shadows() const { return *shadows_; }

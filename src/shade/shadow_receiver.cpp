@@ -13,12 +13,14 @@ void ShadowReceiver::start(const WorldMotion& world, std::uint32_t triangle, con
     segments_ = part.moves ? part.segments : 1;
     path_ = !part.moves ? Path::kStill : segments_ == 1 ? Path::kStraight : Path::kInPieces;
     const LightView& view = map.view();
-    knots_.clear();
-    for (int knot = 0; knot < (part.moves ? segments_ + 1 : 1); ++knot)
+    const int knots = part.moves ? segments_ + 1 : 1;
+    knots_.resize(9 * static_cast<std::size_t>(knots));
+    float* out = knots_.data();
+    for (int knot = 0; knot < knots; ++knot)
         for (int k = 0; k < 3; ++k) {
             const std::uint32_t at = world.corners[3 * std::size_t{triangle} + k] + knot * part.vertex_count;
             const glm::dvec3 p = glm::dvec3(world.points[at]) - view.position;
-            for (int axis = 0; axis < 3; ++axis) knots_.push_back(static_cast<float>(glm::dot(p, view.axes[axis])));
+            for (int axis = 0; axis < 3; ++axis) *out++ = static_cast<float>(glm::dot(p, view.axes[axis]));
         }
     if (!part.moves) return;
     for (int border = 0; border <= ShadowMap::kSamples; ++border) {

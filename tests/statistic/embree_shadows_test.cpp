@@ -12,6 +12,7 @@
 #include "frame/opacity.h"
 #include "peer/posed_picture.h"
 #include "sample/net.h"
+#include "shade/light_point.h"
 #include "shade/shaded_triangle.h"
 #include "support/found.h"
 
@@ -160,7 +161,7 @@ Counts compare(const Case& c) {
             glm::vec3 face = glm::normalize(glm::cross(corner[1] - corner[0], corner[2] - corner[0]));
             const bool front = glm::dot(face, shading.to_eye(position)) >= 0.0f;
             if (!front) face = -face;
-            shaded.shade(b, front, ShadingCell{}, lit);
+            light_point(shading, shaded.material(), shaded.surface(b, front, ShadingCell{}), lit);
             shadows.start(shading.shadows(), triangle);
             ShadowPoint point;
             for (int k = 0; k < 3; ++k) std::fill_n(point.barycentrics[k], ShadowPoint::kLanes, b[k]);
