@@ -37,8 +37,9 @@ struct Domain {
     float u0, u1, v0, v1, t0, t1;
 };
 
-/// Which coordinates the samples of one vector share closely: those that blur.
-enum class Grouping : std::uint8_t { kStill, kMotion, kDefocus, kBoth };
+/// Which coordinates the samples of one vector share closely: those that blur. kTime groups as kMotion does samples
+/// that are those of the other groupings: shadow maps, of which pictures of any blur make use.
+enum class Grouping : std::uint8_t { kStill, kMotion, kDefocus, kBoth, kTime };
 
 /// The samples of a cell by their lens position and time, for patterns that share these among pixels.
 struct SharedSamples {
