@@ -38,9 +38,9 @@ struct Pair {
 
 template <Moves kMoves, bool kDefocus>
 void choose(Pair& pair) {
-    pair.ask_edges = keep_within_edges<kMoves != Moves::kNot, kDefocus>;
-    pair.test_exactly = pair.triangle.two_sided ? write_hits<Kind<kMoves, kDefocus, Seen::kBoth>>
-                                                : write_hits<Kind<kMoves, kDefocus, Seen::kFront>>;
+    pair.ask_edges = keep_within_edges<kMoves != Moves::kNot, kDefocus, false>;
+    pair.test_exactly = pair.triangle.two_sided ? write_hits<Kind<kMoves, kDefocus, Seen::kBoth, false>>
+                                                : write_hits<Kind<kMoves, kDefocus, Seen::kFront, false>>;
 }
 
 void choose(Pair& pair, bool moves, bool defocus) {
@@ -54,7 +54,8 @@ class RecordedTile {
   public:
     RecordedTile(const Frame& frame, const SampleTable& samples, const Bins& bins, const Tile& tile)
         : work_{frame, samples, bins.triangles(), bins.tile(tile.x0, tile.y0), tile},
-          state_((hits_.reset(samples.slots()), work_), hits_, counts_) {
+          of_table_((hits_.reset(samples.slots()), work_)),
+          state_(work_, of_table_.arrangement, hits_, counts_) {
         open(samples);
         const std::vector<std::uint32_t> order = front_to_back(work_);
         for (std::size_t i = 0; i < order.size(); ++i) {
@@ -79,7 +80,7 @@ class RecordedTile {
             pair.ask_edges(state_, batches_[pair.batch].planes, pair.k, pair.listed.size());
         }
     }
-    void start_depths() { hits_.reset(state_.slots); }
+    void start_depths() { hits_.reset(state_.slots()); }
     void test_exactly() {
         for (const Pair& pair : pairs_) {
             std::copy(pair.kept.begin(), pair.kept.end(), state_.jobs.begin());
@@ -103,24 +104,10 @@ class RecordedTile {
   private:
     // As cover_tile() does, for a tile that is a whole cell and shows nothing yet.
     void open(const SampleTable& samples) {
-        const Tile& tile = work_.tile;
-        state_.slots = samples.slots();
-        const std::span<const Domain> domains = samples.domains(tile.cell_x(), tile.cell_y(), domains_);
-        state_.stratum_count = static_cast<int>(domains.size());
-        for (int s = 0; s < kMaxStrata; ++s) {
-            const Domain d = s < state_.stratum_count ? domains[s] : Domain{0, 0, 0, 0, 2, -2};
-            state_.u[0][s] = d.u0, state_.v[0][s] = d.v0, state_.t[0][s] = d.t0;
-            state_.u[1][s] = d.u1, state_.v[1][s] = d.v1, state_.t[1][s] = d.t1;
-        }
         state_.tile_blocks = ~std::uint64_t{0};
-        state_.samples = samples.cell(tile.cell_x(), tile.cell_y(), vectors_).data();
-        const std::size_t vectors = static_cast<std::size_t>(kBlocksPerCell) * state_.slots;
+        const std::size_t vectors = static_cast<std::size_t>(kBlocksPerCell) * samples.slots();
         state_.farthest.assign(vectors, INFINITY);
         state_.jobs.resize(vectors + kLanes);
-        for (int b = 0; b < kBlocksPerCell; ++b) {
-            state_.column_of_block[b] = static_cast<float>(b % kCellBlocks);
-            state_.row_of_block[b] = static_cast<float>(b / kCellBlocks);
-        }
     }
 
     std::size_t list(const Pair& pair) {
@@ -133,7 +120,9 @@ class RecordedTile {
     void record(int b, int k) {
         const BlurBatch& batch = batches_[b];
         if (batch.behind[k] != 0) return;
-        Pair pair{b, k, local_triangle(batch, k, work_.frame), blocks_of(*batch.binned[k], work_.tile), {}, {}, {}, {}};
+        Pair pair{
+            b,  k, local_triangle(batch, k, work_.frame), blocks_of(*batch.binned[k], work_.tile, kBlockSize), {}, {},
+            {}, {}};
         choose(pair, batch.moves[k] != 0, batch.defocus[k] != 0);
         const std::size_t listed = list(pair);
         if (listed == 0) return;
@@ -146,8 +135,7 @@ class RecordedTile {
     TileWork work_;
     Hits hits_;
     CoverCounts counts_;
-    std::vector<Domain> domains_;
-    std::vector<SampleVector> vectors_;
+    ArrangementOfTable of_table_;
     std::vector<BlurBatch> batches_;
     std::vector<Pair> pairs_;
     TileState state_;  // after what it refers to

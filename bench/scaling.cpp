@@ -1,5 +1,6 @@
 // How the time of visibility (binning and covering, one thread) grows with triangles, samples, blur and size. JSON on
-// stdout, for bench/plot_scaling.py; what it does on stderr:  scaling [RUNS] > scaling.json
+// stdout, for bench/plot_scaling.py; what it does on stderr:  scaling [RUNS [triangles|samples|blur|pixels]] >
+// scaling.json
 //
 // Processor time of the whole process, the least of RUNS: others' work on the machine counts little.
 
@@ -172,11 +173,17 @@ int main(int argc, char** argv) {
         forest{"fairy-forest, both", "builtin:fairy-forest", Effect::kBoth, 24},
         moving{"fairy-forest, motion", "builtin:fairy-forest", Effect::kMotion, 24},
         unfocused{"fairy-forest, defocus", "builtin:fairy-forest", Effect::kDefocus, 24};
+    const std::string only = argc > 2 ? argv[2] : "";
+    const auto wanted = [&](const char* quantity) { return only.empty() || only == quantity; };
     Curves curves(runs);
-    curves.triangles(hand, 5);
-    curves.triangles(car, 4);
-    for (const Case& which : {hand, car, forest}) curves.samples(which);
-    for (const Case& which : {forest, moving, unfocused}) curves.blur(which);
-    curves.size(forest);
+    if (wanted("triangles")) {
+        curves.triangles(hand, 5);
+        curves.triangles(car, 4);
+    }
+    if (wanted("samples"))
+        for (const Case& which : {hand, car, forest}) curves.samples(which);
+    if (wanted("blur"))
+        for (const Case& which : {forest, moving, unfocused}) curves.blur(which);
+    if (wanted("pixels")) curves.size(forest);
     curves.finish();
 }

@@ -115,7 +115,7 @@ class StratumPlanes {
 };
 
 // Room for half a block's width and for rounding: a few operations on numbers of this size.
-HWY_INLINE void loosen(const HalfPlanes& H, float ratio, float (&loose)[HalfPlanes::kCount][kLanes]) {
+HWY_INLINE void loosen(const HalfPlanes& H, float ratio, float block_size, float (&loose)[HalfPlanes::kCount][kLanes]) {
     const F f;
     const Vec lens = hn::Set(f, std::max(1.0f, ratio));
     for (int p = 0; p < HalfPlanes::kCount; ++p)
@@ -125,7 +125,7 @@ HWY_INLINE void loosen(const HalfPlanes& H, float ratio, float (&loose)[HalfPlan
             Vec size = hn::Add(hn::Abs(limit), reach(H.e[p]));
             size = hn::MulAdd(lens, hn::Add(reach(H.ku[p]), reach(H.kv[p])), size);
             size = hn::MulAdd(hn::Set(f, kCellSize), direction, size);
-            const Vec room = hn::MulAdd(hn::Set(f, 0.5f * kBlockSize), direction, limit);
+            const Vec room = hn::MulAdd(hn::Set(f, 0.5f * block_size), direction, limit);
             hn::Store(hn::MulAdd(hn::Set(f, 32.0f * kUnitRoundoff), size, room), f, loose[p] + lane);
         });
 }
@@ -144,28 +144,25 @@ HWY_NOINLINE inline void list_cluster(TileState& state, const BlurBatch& batch, 
     boxes_of_strata(state, box, 0, StratumLimits(state, batch.segment[0], batch.segments[0]), state.masks);
 
     HWY_ALIGN float loose[HalfPlanes::kCount][kLanes];
-    loosen(H, ratio, loose);
+    loosen(H, ratio, state.block_size, loose);
     StratumPlanes planes(H, loose);
     const Vec near = hn::Set(f, *std::min_element(batch.nearest, batch.nearest + batch.count));
     const BlockGroups groups(blocks);
     list.count = 0;
-    for (const SampleTable::Stratum& s : state.strata) {
+    for (const Stratum& s : state.arrangement.strata) {
         std::uint64_t wanted = state.masks[s.stratum] & s.blocks & blocks;
         if (wanted == 0) continue;
-        const Job first = static_cast<Job>(s.slot) * kBlocksPerCell;
-        std::uint64_t shown = 0;
-        for (int block = groups.begin * kLanes; block < groups.end * kLanes; block += kWidth)
-            shown |= bits_of(f, hn::Le(near, hn::Load(f, &state.farthest[first + block]))) << block;
-        wanted &= shown;
+        wanted &= shown_blocks(state, s.slot, groups, near);
         if (wanted == 0) continue;
         planes.set(state, s.stratum, begin, end);
         for (; wanted != 0; wanted &= wanted - 1) {
             const int block = std::countr_zero(wanted);
-            const std::uint32_t bits =
-                planes.may_hit(block_x(block) + 0.5f * kBlockSize, block_y(block) - 0.5f * kBlockSize);
-            list.jobs[list.count] = first + static_cast<Job>(block);
+            const Job job = state.job(s.slot, block);
+            const std::uint32_t bits = planes.may_hit(state.left_of(block) + 0.5f * state.block_size,
+                                                      state.top_of(block) - 0.5f * state.block_size);
+            list.jobs[list.count] = job;
             list.triangles[list.count] = bits;
-            list.farthest[list.count] = state.farthest[first + block];
+            list.farthest[list.count] = state.farthest[job];
             list.count += bits != 0;
         }
     }

@@ -69,7 +69,7 @@ class MicropolygonTile {
           boxes_(domains_.size()) {
         for (std::size_t stratum = 0; stratum < domains_.size(); ++stratum)
             all_.add(stratum, domains_[stratum], kAllBlocks);
-        for (const SampleTable::Stratum& s : work.samples.strata(work.tile.cell_x(), work.tile.cell_y()))
+        for (const Stratum& s : work.samples.strata(work.tile.cell_x(), work.tile.cell_y()))
             by_stratum_[s.stratum].push_back({s.slot, s.blocks});
         const Tile& tile = work.tile;
         const float left = static_cast<float>(tile.cell_x() * kCellSize + kCellSize / 2);

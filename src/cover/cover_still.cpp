@@ -44,8 +44,9 @@ void cover_special(StillTile& tile, const StillBatch& batch, int k, std::uint32_
     const SpecialTriangle special = special_triangle(tile, *batch.binned[k]);
     if (special.T.behind) {
         const float ratio = static_cast<float>(tile.work.frame.view.lens.ratio);
-        const std::uint64_t blocks = blocks_at_camera_plane(special.T, *find_cull_test("improved-dual-space"), ratio,
-                                                            blocks_of(*batch.binned[k], tile.work.tile));
+        const std::uint64_t blocks =
+            blocks_at_camera_plane(special.T, *find_cull_test("improved-dual-space"), ratio, kBlockSize,
+                                   blocks_of(*batch.binned[k], tile.work.tile, kBlockSize));
         const auto refused = [&](std::uint32_t job) { return (blocks >> (job & 0xffff) / kLanes & 1) == 0; };
         count = static_cast<std::size_t>(std::remove_if(jobs, jobs + count, refused) - jobs);
     }

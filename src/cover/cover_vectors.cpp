@@ -23,6 +23,7 @@
 
 #include "cover/cover.h"
 #include "cover/front_to_back.h"
+#include "cover/wide_blur.h"
 
 #if HWY_TARGET != HWY_SCALAR  // which takes cover_with_test()
 #include "cover/blur_batch-inl.h"
@@ -44,29 +45,40 @@ constexpr int kWorthRefining = 6;
 
 using CoverJobs = void (*)(TileState&, const LocalTriangle&, const HalfPlanes*, int, std::size_t);
 
-template <Moves kMoves, bool kDefocus>
+template <Moves kMoves, bool kDefocus, bool kFine>
 CoverJobs choose(Seen seen) {
     switch (seen) {
         case Seen::kFront:
-            return cover_jobs<Kind<kMoves, kDefocus, Seen::kFront>>;
+            return cover_jobs<Kind<kMoves, kDefocus, Seen::kFront, kFine>>;
         case Seen::kBack:
-            return cover_jobs<Kind<kMoves, kDefocus, Seen::kBack>>;
+            return cover_jobs<Kind<kMoves, kDefocus, Seen::kBack, kFine>>;
         case Seen::kBoth:
             break;
     }
-    return cover_jobs<Kind<kMoves, kDefocus, Seen::kBoth>>;
+    return cover_jobs<Kind<kMoves, kDefocus, Seen::kBoth, kFine>>;
 }
 
-CoverJobs choose_kind(const BlurBatch& batch, int k) {
-    const bool motion = batch.moves[k] != 0, defocus = batch.defocus[k] != 0;
+template <bool kDefocus, bool kFine>
+CoverJobs choose(Seen seen, bool motion, bool in_pieces) {
+    if (!motion) return choose<Moves::kNot, kDefocus, kFine>(seen);
+    return in_pieces ? choose<Moves::kInPieces, kDefocus, kFine>(seen)
+                     : choose<Moves::kStraight, kDefocus, kFine>(seen);
+}
+
+CoverJobs choose_kind(const TileState& state, const BlurBatch& batch, int k) {
+    const bool motion = batch.moves[k] != 0, in_pieces = batch.segments[k] > 1.0f;
     const Facing facing = batch.binned[k]->facing;
     const Seen seen = !batch.part[k]->two_sided || facing == Facing::kFront ? Seen::kFront
                       : facing == Facing::kBack                             ? Seen::kBack
                                                                             : Seen::kBoth;
-    if (!motion) return defocus ? choose<Moves::kNot, true>(seen) : choose<Moves::kNot, false>(seen);
-    if (batch.segments[k] > 1.0f)
-        return defocus ? choose<Moves::kInPieces, true>(seen) : choose<Moves::kInPieces, false>(seen);
-    return defocus ? choose<Moves::kStraight, true>(seen) : choose<Moves::kStraight, false>(seen);
+    const bool fine = !state.arrangement.places.empty();
+    if (batch.defocus[k] == 0)
+        return fine ? choose<false, true>(seen, motion, in_pieces) : choose<false, false>(seen, motion, in_pieces);
+    return fine ? choose<true, true>(seen, motion, in_pieces) : choose<true, false>(seen, motion, in_pieces);
+}
+
+std::uint64_t blocks_in_tile(const TileState& state, const BinnedTriangle& binned) {
+    return blocks_of(binned, state.work.tile, state.arrangement.block_size) & state.tile_blocks;
 }
 
 void cover_at_camera_plane(TileState& state, const BlurBatch& batch, int k, const CullTest& camera_plane_test) {
@@ -74,14 +86,14 @@ void cover_at_camera_plane(TileState& state, const BlurBatch& batch, int k, cons
     const LocalTriangle T = localize(state.work.frame, binned.triangle, binned.segment, state.centre, state.work.scale);
     const std::uint64_t blocks =
         blocks_at_camera_plane(T, camera_plane_test, static_cast<float>(state.work.frame.view.lens.ratio),
-                               blocks_of(binned, state.work.tile) & state.tile_blocks);
+                               state.block_size, blocks_in_tile(state, binned));
     std::fill(state.masks, state.masks + state.stratum_count, ~0ull);
     const std::size_t jobs = list_jobs(state, state.masks, blocks, batch.nearest[k]);
-    choose_kind(batch, k)(state, T, nullptr, k, jobs);
+    choose_kind(state, batch, k)(state, T, nullptr, k, jobs);
 }
 
 void cover_triangle(TileState& state, const BlurBatch& batch, int k) {
-    const std::uint64_t blocks = blocks_of(*batch.binned[k], state.work.tile) & state.tile_blocks;
+    const std::uint64_t blocks = blocks_in_tile(state, *batch.binned[k]);
     const HalfPlanes& H = batch.planes;
     const StratumLimits limits(state, batch.segment[k], batch.segments[k]);
     boxes_of_strata(state, H, k, limits, state.masks);
@@ -91,7 +103,7 @@ void cover_triangle(TileState& state, const BlurBatch& batch, int k) {
         (block_count > 1 && state.stratum_count == 1))
         refuse_blocks_by_edges(state, H, k, limits, BlockGroups(blocks), state.masks);
     const std::size_t jobs = list_jobs(state, state.masks, blocks, batch.nearest[k]);
-    if (jobs != 0) choose_kind(batch, k)(state, local_triangle(batch, k, state.work.frame), &H, k, jobs);
+    if (jobs != 0) choose_kind(state, batch, k)(state, local_triangle(batch, k, state.work.frame), &H, k, jobs);
 }
 
 void cover_one_by_one(TileState& state, BlurBatch& batch, const CullTest& camera_plane_test) {
@@ -114,17 +126,17 @@ void cover_cluster(TileState& state, ClusterList& list, BlurBatch& batch, const 
     std::uint64_t blocks = 0;
     bool alike = true;
     for (int k = 0; k < batch.count; ++k) {
-        blocks |= blocks_of(*batch.binned[k], state.work.tile);
+        blocks |= blocks_in_tile(state, *batch.binned[k]);
         alike = alike && batch.behind[k] == 0 && batch.segments[k] == batch.segments[0] &&
                 batch.segment[k] == batch.segment[0];
     }
     if (alike) {
-        list_cluster(state, batch, blocks & state.tile_blocks, list);
+        list_cluster(state, batch, blocks, list);
         for (int k = 0; k < batch.count; ++k) {
             if (batch.nearest[k] > state.tile_farthest) continue;
             const std::size_t jobs = jobs_of_triangle(state, list, k, batch.nearest[k]);
             if (jobs != 0)
-                choose_kind(batch, k)(state, local_triangle(batch, k, state.work.frame), &batch.planes, k, jobs);
+                choose_kind(state, batch, k)(state, local_triangle(batch, k, state.work.frame), &batch.planes, k, jobs);
         }
     } else {
         cover_one_by_one(state, batch, camera_plane_test);
@@ -136,9 +148,8 @@ void cover_cluster(TileState& state, ClusterList& list, BlurBatch& batch, const 
 void update_tile_farthest(TileState& state) {
     const F f;
     Vec farthest = hn::Zero(f);
-    for (int slot = 0; slot < state.slots; ++slot)
-        for (int block = 0; block < kBlocksPerCell; block += kWidth)
-            farthest = hn::Max(farthest, hn::Load(f, &state.farthest[slot * kBlocksPerCell + block]));
+    for (std::size_t job = 0; job < state.farthest.size(); job += kWidth)
+        farthest = hn::Max(farthest, hn::Load(f, &state.farthest[job]));
     state.tile_farthest = hn::GetLane(hn::MaxOfLanes(f, farthest));
 }
 
@@ -168,7 +179,7 @@ void cover_front_to_back(TileState& state) {
             cover_cluster(state, list, cluster, camera_plane_test);
         } else {
             if (nearest > state.tile_farthest) break;  // so are all that follow
-            if (some_blocks && (blocks_of(binned, state.work.tile) & state.tile_blocks) == 0) continue;
+            if (some_blocks && blocks_in_tile(state, binned) == 0) continue;
             append(batch, state.work.frame, binned, nearest);
             if (batch.count < BlurBatch::kSize) continue;
             cover_batch(state, batch, camera_plane_test);
@@ -178,37 +189,28 @@ void cover_front_to_back(TileState& state) {
     if (batch.count != 0) cover_batch(state, batch, camera_plane_test);
 }
 
-}  // namespace
+// Puts in order what stands in another: of each entry its place is given.
+template <class T>
+void put_in_place(AlignedVector<T>& values, std::span<const std::uint32_t> places) {
+    thread_local AlignedVector<T> as_found;
+    as_found.assign(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(places.size()));
+    for (std::size_t i = 0; i < places.size(); ++i) values[places[i]] = as_found[i];
+}
 
-void cover_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
-    TileState state(work, hits, counts);
-    const int slots = work.samples.slots();
+void cover_arranged(const TileWork& work, const Arrangement& arrangement, Hits& hits, CoverCounts& counts) {
+    TileState state(work, arrangement, hits, counts);
+    const bool rearranged = !arrangement.places.empty();  // then the tile is a whole cell
+    const int slots = arrangement.slots, size = arrangement.block_size;
     const int left = work.tile.cell_x() * kCellSize, top = work.tile.cell_y() * kCellSize;
-    state.slots = slots;
-    std::vector<Domain> domains_of_cell;
-    const std::span<const Domain> domains =
-        work.samples.domains(work.tile.cell_x(), work.tile.cell_y(), domains_of_cell);
-    state.stratum_count = static_cast<int>(domains.size());
-    state.strata = work.samples.strata(work.tile.cell_x(), work.tile.cell_y());
-    for (int s = 0; s < kMaxStrata; ++s) {
-        const Domain d = s < state.stratum_count ? domains[s] : Domain{0, 0, 0, 0, 2, -2};
-        state.u[0][s] = d.u0, state.v[0][s] = d.v0, state.t[0][s] = d.t0;
-        state.u[1][s] = d.u1, state.v[1][s] = d.v1, state.t[1][s] = d.t1;
-    }
-    state.tile_blocks = column_mask((work.tile.x0 - left) / kBlockSize, (work.tile.x1 - 1 - left) / kBlockSize) &
-                        row_mask((work.tile.y0 - top) / kBlockSize, (work.tile.y1 - 1 - top) / kBlockSize) &
-                        work.tile.blocks;
-    std::vector<SampleVector> vectors_of_cell;
-    state.samples = work.samples.cell(work.tile.cell_x(), work.tile.cell_y(), vectors_of_cell).data();
-    const std::size_t vectors = static_cast<std::size_t>(kBlocksPerCell) * slots;
+    state.tile_blocks = column_mask((work.tile.x0 - left) / size, (work.tile.x1 - 1 - left) / size) &
+                        row_mask((work.tile.y0 - top) / size, (work.tile.y1 - 1 - top) / size) & work.tile.blocks;
+    const std::size_t vectors = std::size_t{kCellSize} * kCellSize * work.samples.spp() / kLanes;
     state.farthest.resize(vectors);
-    for (std::size_t job = 0; job < vectors; ++job)  // nothing is hidden in the tile, everything beyond it
-        state.farthest[job] = state.tile_blocks >> (job % kBlocksPerCell) & 1 ? INFINITY : -INFINITY;
-    state.jobs.resize(vectors + kLanes);  // list_jobs writes up to sixteen beyond
-    for (int b = 0; b < kBlocksPerCell; ++b) {
-        state.column_of_block[b] = static_cast<float>(b % kCellBlocks);
-        state.row_of_block[b] = static_cast<float>(b / kCellBlocks);
+    for (std::size_t job = 0; job < vectors; ++job) {  // nothing is hidden in the tile, everything beyond it
+        const bool within = rearranged || (state.tile_blocks >> (job % kBlocksPerCell) & 1u) != 0;
+        state.farthest[job] = within ? INFINITY : -INFINITY;
     }
+    state.jobs.resize(vectors + kLanes);  // list_jobs writes up to sixteen beyond
 
     // Pixels beyond the tile's border take no hits: nothing is nearer than -infinity.
     auto for_each_outside_lane = [&](auto&& visit) {
@@ -225,6 +227,25 @@ void cover_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
     if (cut) for_each_outside_lane([&](std::size_t s) { hits.depth[s] = -INFINITY; });
     cover_front_to_back(state);
     if (cut) for_each_outside_lane([&](std::size_t s) { hits.depth[s] = INFINITY; });
+}
+
+}  // namespace
+
+void cover_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
+    const int cx = work.tile.cell_x(), cy = work.tile.cell_y();
+    if (blurs_widely(work)) {
+        const FineLens& fine = work.samples.fine_lens();
+        const std::size_t cell = work.samples.cell_index(cx, cy);
+        const std::span<const std::uint32_t> places = fine.places(cell);
+        cover_arranged(work,
+                       {fine.block_size(), fine.slots(), fine.cell(cell).data(), fine.domains(), fine.strata(), places},
+                       hits, counts);
+        put_in_place(hits.depth, places);
+        put_in_place(hits.triangle, places);
+        return;
+    }
+    const ArrangementOfTable of_table(work);
+    cover_arranged(work, of_table.arrangement, hits, counts);
 }
 
 }  // namespace HWY_NAMESPACE

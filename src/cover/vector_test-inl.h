@@ -20,8 +20,9 @@ namespace HWY_NAMESPACE {
 // What of the general test a triangle needs. Adding u*0 or t*0 is exact: the shorter kernels give the same bits.
 enum class Moves { kNot, kStraight, kInPieces };  // kInPieces: samples of other segments of the path are not ours
 enum class Seen { kFront, kBack, kBoth };         // the sides that some sample may see
-template <Moves kMovesT, bool kDefocusT, Seen kSeenT>
+template <Moves kMovesT, bool kDefocusT, Seen kSeenT, bool kFineT>
 struct Kind {
+    static constexpr bool kFine = kFineT;  // the samples are those of FineLens
     static constexpr Moves kMoves = kMovesT;
     static constexpr bool kMotion = kMovesT != Moves::kNot, kDefocus = kDefocusT;
     static constexpr Seen kSeen = kSeenT;
@@ -29,7 +30,7 @@ struct Kind {
 
 // Pass 1: keeps the vectors of the work list that have a sample inside the half-planes of all three edges of a triangle
 // of the batch.
-template <bool kMotion, bool kDefocus>
+template <bool kMotion, bool kDefocus, bool kFine>
 std::size_t keep_within_edges(TileState& state, const HalfPlanes& H, int triangle, std::size_t job_count) {
     const F f;
     constexpr int kEdge = HalfPlanes::kEdges;
@@ -43,10 +44,11 @@ std::size_t keep_within_edges(TileState& state, const HalfPlanes& H, int triangl
         limit[k] = hn::Set(f, H.f[kEdge + k][triangle]);
     }
     Job* HWY_RESTRICT jobs = state.jobs.data();
+    const SampleVector* samples = state.arrangement.samples;
     std::size_t count = 0;
     for (std::size_t j = 0; j < job_count; ++j) {
         const Job job = jobs[j];
-        const SampleVector& s = state.samples[state.place(job)];
+        const SampleVector& s = samples[state.place<kFine>(job)];
         bool any = false;
         for (int lane = 0; lane < kLanes; lane += kWidth) {
             const Vec x = hn::Load(f, s.x + lane), y = hn::Load(f, s.y + lane);
@@ -182,22 +184,32 @@ inline bool may_leave_depth_range(const LocalTriangle& T) {
 }
 
 // The samples in the lanes of a job, from `lane` on.
+template <bool kFine>
 class LanesOfJob {
   public:
     LanesOfJob(const TileState& state, Job job, int lane)
-        : lane_(lane),
-          bx_(state.work.tile.cell_x() * kCellBlocks + static_cast<int>(job) % kCellBlocks),
-          by_(state.work.tile.cell_y() * kCellBlocks + static_cast<int>(job) % kBlocksPerCell / kCellBlocks),
-          indices_(state.work.samples.indices(bx_, by_).subspan(std::size_t{job} / kBlocksPerCell * kLanes, kLanes)) {}
+        : tile_(state.work.tile),
+          indices_(state.indices),
+          places_(state.arrangement.places),
+          first_(static_cast<std::uint32_t>(state.place<kFine>(job) * kLanes) + static_cast<std::uint32_t>(lane)),
+          block_(job % kBlocksPerCell),
+          samples_per_block_(state.samples_per_block) {}
 
     SampleOfPixel operator()(int k) const {
-        const int lane = lane_ + k;
-        return {bx_ * kBlockSize + lane % kBlockSize, by_ * kBlockSize + lane / kBlockSize, indices_[lane]};
+        std::uint32_t place = first_ + static_cast<std::uint32_t>(k), block = block_;
+        if constexpr (kFine) place = places_[place], block = place / samples_per_block_;
+        const std::uint32_t lane = place % kLanes;
+        const std::uint32_t px = block % kCellBlocks * kBlockSize + lane % kBlockSize;
+        const std::uint32_t py = block / kCellBlocks * kBlockSize + lane / kBlockSize;
+        return {tile_.cell_x() * kCellSize + static_cast<int>(px), tile_.cell_y() * kCellSize + static_cast<int>(py),
+                indices_[place]};
     }
 
   private:
-    int lane_, bx_, by_;
+    const Tile& tile_;
     std::span<const std::uint16_t> indices_;
+    std::span<const std::uint32_t> places_;
+    std::uint32_t first_, block_, samples_per_block_;
 };
 
 // Pass 2: the exact test, depth, opacity and writes.
@@ -211,10 +223,11 @@ void write_hits(TileState& state, const LocalTriangle& T, std::size_t count) {
     const OpacityTerms terms =
         T.alpha_tested && count != 0 ? opacity_terms(state.work.frame, T.triangle) : OpacityTerms();
     std::int64_t covered = 0;
+    const SampleVector* samples = state.arrangement.samples;
     for (std::size_t j = 0; j < count; ++j) {
         const Job job = state.jobs[j];
-        const std::size_t place = state.place(job);
-        const SampleVector& s = state.samples[place];
+        const std::size_t place = state.place<K::kFine>(job);
+        const SampleVector& s = samples[place];
         float* depths = &state.hits.depth[place * kLanes];
         std::uint32_t* triangles = &state.hits.triangle[place * kLanes];
         Vec farthest = zero;
@@ -245,7 +258,8 @@ void write_hits(TileState& state, const LocalTriangle& T, std::size_t count) {
                 hit = hn::Or(hit, hn::And(equal, lower));
             }
             if (T.alpha_tested && !hn::AllFalse(f, hit))
-                hit = decide_opacity(f, state.work, T.triangle, terms, E.e, sum, hit, LanesOfJob(state, job, lane));
+                hit = decide_opacity(f, state.work, T.triangle, terms, E.e, sum, hit,
+                                     LanesOfJob<K::kFine>(state, job, lane));
             const Vec nearest = hn::IfThenElse(hit, depth, stored);
             hn::Store(nearest, f, depths + lane);
             hn::Store(hn::IfThenElse(hn::RebindMask(u, hit), triangle, stored_triangle), u, triangles + lane);
@@ -259,7 +273,7 @@ void write_hits(TileState& state, const LocalTriangle& T, std::size_t count) {
 
 template <class K>
 void cover_jobs(TileState& state, const LocalTriangle& T, const HalfPlanes* H, int k, std::size_t jobs) {
-    if (H != nullptr) jobs = keep_within_edges<K::kMotion, K::kDefocus>(state, *H, k, jobs);
+    if (H != nullptr) jobs = keep_within_edges<K::kMotion, K::kDefocus, K::kFine>(state, *H, k, jobs);
     write_hits<K>(state, T, jobs);
 }
 

@@ -26,19 +26,12 @@ constexpr std::uint64_t row_mask(int row0, int row1) {
     return row0 > row1 ? 0 : (~0ull >> (8 * (7 - row1))) & (~0ull << (8 * row0));
 }
 
-// Blocks of the cell that the pixel rectangle touches.
-inline std::uint64_t blocks_of(const BinnedTriangle& binned, const Tile& tile) {
+// Blocks of the cell, of `size` pixels a side, that the pixel rectangle touches.
+inline std::uint64_t blocks_of(const BinnedTriangle& binned, const Tile& tile, int size) {
     const int left = tile.cell_x() * kCellSize, top = tile.cell_y() * kCellSize;
     const int x0 = std::max<int>(binned.x0, tile.x0) - left, x1 = std::min<int>(binned.x1, tile.x1) - left - 1;
     const int y0 = std::max<int>(binned.y0, tile.y0) - top, y1 = std::min<int>(binned.y1, tile.y1) - top - 1;
-    return column_mask(x0 / kBlockSize, x1 / kBlockSize) & row_mask(y0 / kBlockSize, y1 / kBlockSize);
-}
-
-inline float block_x(int block) {
-    return static_cast<float>(block % kCellBlocks * kBlockSize - kCellSize / 2);
-}
-inline float block_y(int block) {
-    return static_cast<float>(kCellSize / 2 - block / kCellBlocks * kBlockSize);
+    return column_mask(x0 / size, x1 / size) & row_mask(y0 / size, y1 / size);
 }
 
 // Largest value of affine functions of (u, v, t) over strata: what the half-planes of triangle k allow.
@@ -137,7 +130,7 @@ HWY_INLINE void boxes_of_strata(const TileState& state, const HalfPlanes& H, int
                                left = limits.plane(H, HalfPlanes::kLeft, k),
                                above = limits.plane(H, HalfPlanes::kAbove, k),
                                below = limits.plane(H, HalfPlanes::kBelow, k);
-    const Vec middle = hn::Set(f, kCellBlocks / 2), per_block = hn::Set(f, 1.0f / kBlockSize), zero = hn::Zero(f);
+    const Vec middle = hn::Set(f, state.middle), per_block = hn::Set(f, state.per_block), zero = hn::Zero(f);
     const Vec eight = hn::Set(f, kCellBlocks), seven = hn::Set(f, kCellBlocks - 1);
     const auto clamped = [&](Vec v) HWY_ATTR { return hn::Min(hn::Max(v, zero), seven); };
     if (limits.group_count() * kWidth < state.stratum_count) std::fill(masks, masks + state.stratum_count, 0);
@@ -177,11 +170,12 @@ HWY_NOINLINE inline void refuse_blocks_by_edges(const TileState& state, const Ha
         for (int g = 0; g < limits.group_count(); ++g)
             hn::Store(limits.in_any_direction(plane, limits.group(g)), f, limit[edge] + limits.group(g));
         const float nx = H.nx[kEdge + edge][k], ny = H.ny[kEdge + edge][k];
-        const float origin = nx * (nx > 0 ? -16.0f : -12.0f) + ny * (ny > 0 ? 12.0f : 16.0f);
+        const float size = state.block_size;
+        const float origin = nx * (nx > 0 ? -16.0f : size - 16.0f) + ny * (ny > 0 ? 16.0f - size : 16.0f);
         for (int block = among.begin * kLanes; block < among.end * kLanes; block += kWidth) {
             const Vec x =
-                hn::MulAdd(hn::Set(f, nx * kBlockSize), hn::Load(f, state.column_of_block + block), hn::Set(f, origin));
-            hn::Store(hn::NegMulAdd(hn::Set(f, ny * kBlockSize), hn::Load(f, state.row_of_block + block), x), f,
+                hn::MulAdd(hn::Set(f, nx * size), hn::Load(f, state.column_of_block + block), hn::Set(f, origin));
+            hn::Store(hn::NegMulAdd(hn::Set(f, ny * size), hn::Load(f, state.row_of_block + block), x), f,
                       least[edge] + block);
         }
     }
@@ -200,14 +194,15 @@ HWY_NOINLINE inline void refuse_blocks_by_edges(const TileState& state, const Ha
 }
 
 // Triangles at the camera plane: quotients are invalid there, so each block asks the improved dual-space test.
-inline std::uint64_t blocks_at_camera_plane(const LocalTriangle& T, const CullTest& test, float ratio,
+inline std::uint64_t blocks_at_camera_plane(const LocalTriangle& T, const CullTest& test, float ratio, float block_size,
                                             std::uint64_t candidates) {
     CullState scratch;
     std::uint64_t kept = 0;
     for (std::uint64_t m = candidates; m != 0; m &= m - 1) {
         const int block = std::countr_zero(m);
-        const float x = block_x(block), y = block_y(block);
-        const Footprint footprint{x, x + kBlockSize, y - kBlockSize, y, {-1.0f, 1.0f, -ratio, ratio, 0.0f, 1.0f}};
+        const float x = static_cast<float>(block % kCellBlocks) * block_size - 0.5f * kCellSize;
+        const float y = 0.5f * kCellSize - static_cast<float>(block / kCellBlocks) * block_size;
+        const Footprint footprint{x, x + block_size, y - block_size, y, {-1.0f, 1.0f, -ratio, ratio, 0.0f, 1.0f}};
         if (test.prepare(T, footprint, scratch)) kept |= m & -m;
     }
     return kept;
@@ -232,31 +227,67 @@ HWY_INLINE void masks_of_slots(const TileState& state, const std::uint64_t* mask
     }
 }
 
+// Bits 8 * row + column of four rows and columns as bits 4 * row + column, and the other way.
+constexpr std::uint32_t four_by_four(std::uint64_t blocks) {
+    const std::uint64_t pairs = (blocks | blocks >> 4) & 0x00ff00ff;
+    return static_cast<std::uint32_t>(pairs | pairs >> 8) & 0xffffu;
+}
+constexpr std::uint64_t of_eight_by_eight(std::uint32_t bits) {
+    const std::uint64_t pairs = (bits | std::uint64_t{bits} << 8) & 0x00ff00ff;
+    return (pairs | pairs << 4) & 0x0f0f0f0f;
+}
+static_assert(four_by_four(0x0804'0201) == 0x8421 && of_eight_by_eight(0x8421) == 0x0804'0201);
+
+// Of the sixteen jobs from `first` on, those that are not hidden: one bit each.
+HWY_INLINE std::uint32_t shown(const TileState& state, Job first, Vec near) {
+    const F f;
+    std::uint32_t bits = 0;
+    for (int lane = 0; lane < kLanes; lane += kWidth)
+        bits |= static_cast<std::uint32_t>(bits_of(f, hn::Le(near, hn::Load(f, &state.farthest[first + lane]))))
+                << lane;
+    return bits;
+}
+
 // The vectors (block, slot) of the masks that are not hidden, slot by slot. How many bits a mask has is unpredictable,
 // so all the lanes of a group of blocks are written, wanted or not.
 HWY_NOINLINE inline std::size_t list_jobs(TileState& state, const std::uint64_t* masks, std::uint64_t blocks,
                                           float nearest) {
     const F f;
     const Vec near = hn::Set(f, nearest);
-    const BlockGroups groups(blocks);
     std::uint64_t* HWY_RESTRICT slots = state.masks_of_slots.data();
     masks_of_slots(state, masks, blocks, slots);
     Job* HWY_RESTRICT jobs = state.jobs.data();
     std::size_t count = 0;
-    for (int slot = 0; slot < state.slots; ++slot) {
+    const int slot_count = state.slots();
+    if (state.blocks_a_side < kCellBlocks) {
+        for (int slot = 0; slot < slot_count; ++slot)
+            if (slots[slot] != 0) {
+                const Job first = static_cast<Job>(slot * kLanes);
+                count += write_lanes(first, four_by_four(slots[slot]) & shown(state, first, near), jobs + count);
+            }
+        return count;
+    }
+    const BlockGroups groups(blocks);
+    for (int slot = 0; slot < slot_count; ++slot) {
         const std::uint64_t m = slots[slot];
         if (m == 0) continue;
-        const Job first = static_cast<Job>(slot) * kBlocksPerCell;
         for (int g = groups.begin; g < groups.end; ++g) {
-            std::uint32_t shown = 0;
-            for (int lane = 0; lane < kLanes; lane += kWidth)
-                shown |= static_cast<std::uint32_t>(
-                    bits_of(f, hn::Le(near, hn::Load(f, &state.farthest[first + g * kLanes + lane]))) << lane);
-            const std::uint32_t wanted = static_cast<std::uint32_t>(m >> g * kLanes) & 0xffffu & shown;
-            count += write_lanes(first + static_cast<Job>(g * kLanes), wanted, jobs + count);
+            const Job first = static_cast<Job>(slot * kBlocksPerCell + g * kLanes);
+            const std::uint32_t wanted = static_cast<std::uint32_t>(m >> g * kLanes) & 0xffffu;
+            count += write_lanes(first, wanted & shown(state, first, near), jobs + count);
         }
     }
     return count;
+}
+
+// Blocks of a slot, of those in `groups`, that are not hidden.
+HWY_INLINE std::uint64_t shown_blocks(const TileState& state, int slot, const BlockGroups& groups, Vec near) {
+    if (state.blocks_a_side < kCellBlocks)
+        return of_eight_by_eight(shown(state, static_cast<Job>(slot * kLanes), near));
+    std::uint64_t blocks = 0;
+    for (int g = groups.begin; g < groups.end; ++g)
+        blocks |= std::uint64_t{shown(state, static_cast<Job>(slot * kBlocksPerCell + g * kLanes), near)} << g * kLanes;
+    return blocks;
 }
 
 }  // namespace HWY_NAMESPACE

@@ -1,7 +1,7 @@
 #include "image/tone_curve.h"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
 
 namespace pentaprism {
@@ -24,12 +24,32 @@ float hable(float x) {
     return hable_curve(kExposureBias * x) / hable_curve(kWhite);
 }
 
-// Step k is where 255 * srgb passes k + 1/2.
-std::array<float, 255> make_steps() {
-    std::array<float, 255> steps{};
-    for (int k = 0; k < 255; ++k) steps[k] = static_cast<float>(srgb_decode((k + 0.5) / 255.0));
-    return steps;
-}
+// Where 255 * srgb passes k + 1/2, and from which k to look on: known for each 64th of an octave, in which the curve
+// steps at most twice.
+class SrgbSteps {
+  public:
+    SrgbSteps() {
+        for (int k = 0; k < 255; ++k) steps_[k] = static_cast<float>(srgb_decode((k + 0.5) / 255.0));
+        for (std::uint32_t i = 0; i < kIntervals; ++i) {
+            const float least = std::bit_cast<float>(kLeastBits + (i << kShift));
+            first_[i] = static_cast<std::uint8_t>(std::upper_bound(steps_, steps_ + 255, least) - steps_);
+        }
+    }
+    std::uint8_t code(float display) const {
+        if (!(display >= kLeast)) return 0;
+        const std::uint32_t interval = (std::bit_cast<std::uint32_t>(display) - kLeastBits) >> kShift;
+        std::uint8_t k = first_[std::min(interval, kIntervals - 1)];
+        while (k < 255 && steps_[k] <= display) ++k;
+        return k;
+    }
+
+  private:
+    static constexpr float kLeast = 0x1p-13f;  // before the first step
+    static constexpr std::uint32_t kLeastBits = std::bit_cast<std::uint32_t>(kLeast), kShift = 17,
+                                   kIntervals = (13 << 6) + 1;
+    float steps_[255];
+    std::uint8_t first_[kIntervals];
+};
 
 }  // namespace
 
@@ -57,8 +77,8 @@ float tone_map(ToneMap curve, float linear) {
 }
 
 std::uint8_t to_srgb8(float display) {
-    static const std::array<float, 255> steps = make_steps();
-    return static_cast<std::uint8_t>(std::upper_bound(steps.begin(), steps.end(), display) - steps.begin());
+    static const SrgbSteps steps;
+    return steps.code(display);
 }
 
 }  // namespace pentaprism

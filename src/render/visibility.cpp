@@ -19,15 +19,6 @@ SamplePattern pattern_for(VisibilityMethod method) {
     }
 }
 
-// Of its cell.
-std::uint64_t blocks_of(const Tile& tile) {
-    std::uint64_t blocks = 0;
-    for (int y = tile.y0; y < tile.y1; y += kBlockSize)
-        for (int x = tile.x0; x < tile.x1; x += kBlockSize)
-            blocks |= std::uint64_t{1} << (y % kCellSize / kBlockSize * kCellBlocks + x % kCellSize / kBlockSize);
-    return blocks;
-}
-
 }  // namespace
 
 Grouping grouping_for(const Frame& frame) {
@@ -53,8 +44,6 @@ std::vector<Tile> tiles_over(const PixelRect& limits, int size) {
     for (int y = limits.y0 / size * size; y < limits.y1; y += size)
         for (int x = limits.x0 / size * size; x < limits.x1; x += size)
             tiles.push_back({x, y, std::min(x + size, limits.x1), std::min(y + size, limits.y1)});
-    if (size < kCellSize)  // what lies beside them need not be cleared
-        for (Tile& tile : tiles) tile.blocks = blocks_of(tile);
     return tiles;
 }
 

@@ -99,7 +99,6 @@ PixelPlace pixel_place(int cell, int cells, int block, int lane) {
             cell / cells * kCellSize + block / kCellBlocks * kBlockSize + lane / kBlockSize};
 }
 
-constexpr int kMaxStrata = 64;
 constexpr int kMostByPixel = 256;  // samples per pixel: with more, a tile by pixel is megabytes
 
 int stratum_count(Grouping grouping, int spp) {
@@ -115,17 +114,6 @@ int stratum_count(Grouping grouping, int spp) {
             return kMaxStrata;
     }
     return kMaxStrata;
-}
-
-constexpr Domain kEmptyDomain = {2, -2, 1e30f, -1e30f, 2, -2};
-
-void extend(Domain& domain, const Domain& other) {
-    domain.u0 = std::min(domain.u0, other.u0);
-    domain.u1 = std::max(domain.u1, other.u1);
-    domain.v0 = std::min(domain.v0, other.v0);
-    domain.v1 = std::max(domain.v1, other.v1);
-    domain.t0 = std::min(domain.t0, other.t0);
-    domain.t1 = std::max(domain.t1, other.t1);
 }
 
 }  // namespace
@@ -150,7 +138,9 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
     const int strata_count = sampler == Sampler::kStratified ? stratum_count(grouping, spp)
                              : grouping == Grouping::kStill  ? 1
                                                              : std::min(spp, kMaxStrata);
-    std::vector<std::uint8_t> stratum(blocks * spp);
+    const bool by_lens = grouping == Grouping::kDefocus || grouping == Grouping::kBoth;
+    const bool wants_fine_lens = by_lens && sampler == Sampler::kStratified && !is_placed();
+    std::vector<std::uint8_t> stratum(blocks * spp), fine_cells(wants_fine_lens ? blocks * spp * kLanes : 0);
     std::vector<std::array<Domain, kMaxStrata>> domains(blocks);
 
     parallel_for(blocks, [&](std::size_t b) {
@@ -158,7 +148,7 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
         const int bx = cell % cells * kCellBlocks + in_cell % kCellBlocks;
         const int by = cell / cells * kCellBlocks + in_cell / kCellBlocks;
         const BlockPattern block_pattern(spp, seed, bx, by);
-        domains[b].fill(kEmptyDomain);
+        domains[b].fill(Domain::empty());
         const auto store = [&](int lane, int index, const SamplePoint& sample, int slot, int s) {
             SampleVector& vector = vectors_[b * spp + slot];
             const LocalOffset place = local_offset(in_cell, lane);
@@ -170,7 +160,7 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
             indices_[(b * spp + slot) * kLanes + lane] = static_cast<std::uint16_t>(index);
             slots_[(b * kLanes + lane) * spp + index] = static_cast<std::uint16_t>(slot);
             stratum[b * spp + slot] = static_cast<std::uint8_t>(s);
-            extend(domains[b][s], {sample.u, sample.u, sample.v, sample.v, sample.t, sample.t});
+            domains[b][s].extend({sample.u, sample.u, sample.v, sample.v, sample.t, sample.t});
         };
         if (sampler != Sampler::kStratified && !shared) {
             std::vector<RawSample> raw(spp);
@@ -186,7 +176,6 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
             }
             return;
         }
-        const bool by_lens = grouping == Grouping::kDefocus || grouping == Grouping::kBoth;
         const std::vector<std::uint16_t> order = by_lens ? block_pattern.lens_order() : std::vector<std::uint16_t>();
         std::optional<MotionPattern> motion;
         if (grouping == Grouping::kMotion) motion.emplace(spp, seed, bx, by);
@@ -208,15 +197,18 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
                 const int slot = by_lens                ? order[index]
                                  : is_by_time(grouping) ? static_cast<int>(raw.stratum_t)
                                                         : index;
+                if (wants_fine_lens)
+                    fine_cells[(b * spp + slot) * kLanes + lane] =
+                        static_cast<std::uint8_t>((raw.v >> 29) * FineLens::kSide + (raw.u >> 29));
                 store(lane, index, to_sample(raw, shared ? shared->count() : spp, lens, times_), slot,
                       stratum_of(grouping, spp, base_u, base_v, index, slot));
             }
         }
     });
 
-    domains_.assign(strata_count, kEmptyDomain);
+    domains_.assign(strata_count, Domain::empty());
     for (const auto& block : domains)
-        for (std::size_t s = 0; s < domains_.size(); ++s) extend(domains_[s], block[s]);
+        for (std::size_t s = 0; s < domains_.size(); ++s) domains_[s].extend(block[s]);
 
     strata_.resize(static_cast<std::size_t>(cells) * cells);
     for (int cell = 0; cell < cells * cells; ++cell) {
@@ -229,6 +221,7 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
             strata_[cell].push_back(
                 {static_cast<std::uint16_t>(key.first), static_cast<std::uint16_t>(key.second), blocks_mask});
     }
+    if (wants_fine_lens) fine_lens_ = FineLens(spp, vectors_, fine_cells);
     if (shared)
         arrange_by_triple(*shared);
     else if (grouping == Grouping::kStill && spp % kLanes == 0 && spp <= kMostByPixel)
@@ -364,7 +357,8 @@ std::span<const Domain> SampleTable::domains(int cx, int cy, std::vector<Domain>
 void SampleTable::fit_lens(int cx, int cy, std::vector<Domain>& domains) const {
     static thread_local std::vector<SampleVector> room;
     const std::span<const SampleVector> vectors = cell(cx, cy, room);
-    for (Domain& d : domains) d = {kEmptyDomain.u0, kEmptyDomain.u1, kEmptyDomain.v0, kEmptyDomain.v1, d.t0, d.t1};
+    constexpr Domain kEmpty = Domain::empty();
+    for (Domain& d : domains) d = {kEmpty.u0, kEmpty.u1, kEmpty.v0, kEmpty.v1, d.t0, d.t1};
     for (const Stratum& s : strata(cx, cy))
         for (int block = 0; block < kBlocksPerCell; ++block) {
             if (!(s.blocks >> block & 1u)) continue;
@@ -380,7 +374,12 @@ std::span<const std::uint16_t> SampleTable::indices(int bx, int by) const {
     return std::span(indices_).subspan(block_index(bx, by) * spp_ * kLanes, static_cast<std::size_t>(spp_) * kLanes);
 }
 
-std::span<const SampleTable::Stratum> SampleTable::strata(int cx, int cy) const {
+std::span<const std::uint16_t> SampleTable::indices_of_cell(int cx, int cy) const {
+    const std::size_t per_cell = std::size_t{kCellSize} * kCellSize * spp_;
+    return std::span(indices_).subspan(cell_index(cx, cy) * per_cell, per_cell);
+}
+
+std::span<const Stratum> SampleTable::strata(int cx, int cy) const {
     return strata_[cell_index(cx, cy)];
 }
 

@@ -9,32 +9,18 @@
 
 #include "base/aligned.h"
 #include "camera/view.h"
-#include "sample/block_pattern.h"
 #include "sample/cats_eye.h"
+#include "sample/fine_lens.h"
 #include "sample/sample_times.h"
+#include "sample/sample_vector.h"
 #include "sample/shared_triples.h"
 
 namespace pentaprism {
-
-inline constexpr int kCellSize = 32;                        ///< pixels a side of a cell of the exact test's grid
-inline constexpr int kCellBlocks = kCellSize / kBlockSize;  ///< blocks a side of a cell
-inline constexpr int kBlocksPerCell = kCellBlocks * kCellBlocks;
 
 /// One sample. x, y: offset in the pixel from its top left corner, in [0, 1), multiples of 1/256, y down. (u, v): in
 /// the unit disk, v up and already times Lens::ratio. t in [0, 1), a multiple of 2^-24.
 struct SamplePoint {
     float x = 0, y = 0, u = 0, v = 0, t = 0;
-};
-
-/// Sixteen samples, lane = 4 * (row in the block) + column. (x, y) is the offset in pixels from the middle of the
-/// sample's cell, y UP, both in [-16, 16]: what the exact test calls (hx, hy).
-struct alignas(64) SampleVector {
-    float x[kLanes], y[kLanes], u[kLanes], v[kLanes], t[kLanes];
-};
-
-/// Closed ranges of the lens and the shutter.
-struct Domain {
-    float u0, u1, v0, v1, t0, t1;
 };
 
 /// Which coordinates the samples of one vector share closely: those that blur. kTime groups as kMotion does samples
@@ -91,6 +77,9 @@ class SampleTable {
     /// lane is slot_of().
     std::span<const std::uint16_t> indices(int bx, int by) const;
 
+    /// The same of all blocks of a cell, in the order of Hits.
+    std::span<const std::uint16_t> indices_of_cell(int cx, int cy) const;
+
     /// The sample itself, for references and replays: reads the table.
     SamplePoint sample(int px, int py, int index) const;
 
@@ -101,13 +90,14 @@ class SampleTable {
     /// shutter and a cat's eye wherever they are in the picture.
     std::span<const Domain> domains(int cx, int cy, std::vector<Domain>& room) const;
 
-    /// The vectors of a cell by stratum: slot `slot` of the blocks in `blocks` (bit 8 * row + column) lies in
-    /// `stratum`.
-    struct Stratum {
-        std::uint16_t slot, stratum;
-        std::uint64_t blocks;
-    };
+    /// The vectors of a cell by stratum.
     std::span<const Stratum> strata(int cx, int cy) const;
+
+    /// For wide blur, where the grouping is by lens; else, with a rolling shutter and with a cat's eye, empty.
+    const FineLens& fine_lens() const { return fine_lens_; }
+
+    /// Index in fine_lens() of the cell at (cx, cy).
+    std::size_t cell_index(int cx, int cy) const;
 
     /// Of a pattern that is not kFree.
     SharedSamples shared(int cx, int cy) const;
@@ -120,7 +110,6 @@ class SampleTable {
     bool is_placed() const { return times_.roll() || eye_.on(); }
     void place_block(std::span<SampleVector> vectors, int bx, int by) const;
     void fit_lens(int cx, int cy, std::vector<Domain>& domains) const;
-    std::size_t cell_index(int cx, int cy) const;
     std::size_t block_index(int bx, int by) const;
     void arrange_by_triple(const SharedTriples& shared);
     void arrange_by_pixel();
@@ -136,6 +125,7 @@ class SampleTable {
     std::vector<std::uint16_t> slots_;    // [block][lane][index]
     std::vector<Domain> domains_;
     std::vector<std::vector<Stratum>> strata_;  // by cell of the period
+    FineLens fine_lens_;
     // Shared patterns: [cell of the period], then as in SharedSamples.
     int block_side_ = 1;
     std::vector<SharedSamples::Triple> triples_;

@@ -1,10 +1,12 @@
 #include "shade/casters.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 
 #include "base/parallel.h"
 #include "bound/screen_bounds.h"
@@ -89,9 +91,15 @@ void fill_part(const WorldMotion& world, const Frame& frame, const Part& was, co
                     out.pieces.begin() + part.first_triangle);
 }
 
-float outward(double value, double direction) {
-    const float rounded = static_cast<float>(value);
-    return std::nextafter(rounded, static_cast<float>(direction));
+// The next float above, as std::nextafter(), which is a call. Not of one that is no number.
+float next_above(float x) {
+    if (x == 0.0f) return std::numeric_limits<float>::denorm_min();
+    const auto bits = std::bit_cast<std::int32_t>(x);
+    return x == INFINITY ? x : std::bit_cast<float>(bits + (x > 0.0f ? 1 : -1));
+}
+
+float next_below(float x) {
+    return -next_above(-x);
 }
 
 bool is_usable(const MovingTriangle& m) {
@@ -108,8 +116,8 @@ void take(const ScreenBox& box, bool perspective, Casters::Box like, std::vector
     if (perspective &&
         (box.x0 > kWidestTangent || box.x1 < -kWidestTangent || box.y0 > kWidestTangent || box.y1 < -kWidestTangent))
         return;
-    like.x0 = outward(box.x0, -INFINITY), like.x1 = outward(box.x1, INFINITY);
-    like.y0 = outward(box.y0, -INFINITY), like.y1 = outward(box.y1, INFINITY);
+    like.x0 = next_below(static_cast<float>(box.x0)), like.x1 = next_above(static_cast<float>(box.x1));
+    like.y0 = next_below(static_cast<float>(box.y0)), like.y1 = next_above(static_cast<float>(box.y1));
     out.push_back(like);
 }
 

@@ -158,20 +158,16 @@ void TileShader::find_cells(const Run& run, TileShade& out) {
     std::size_t size = 16;
     while (size < 2 * run.places.size()) size *= 2;
     cell_table_.assign(size, 0u);
-    SharedCell* cell = nullptr;
     for (std::size_t i = 0; i < run.places.size(); ++i) {
         const CellKey key = seen_.key(i);
-        if (cell == nullptr || !(cell->key == key)) {  // often it is the one before
-            const std::uint64_t whole = std::uint64_t{key.kind} << 32 | key.place;
-            std::size_t at = static_cast<std::size_t>(whole * 0x9e3779b97f4a7c15ull >> 40) & (size - 1);
-            while (cell_table_[at] != 0 && !(cells_[cell_table_[at] - 1].key == key)) at = (at + 1) & (size - 1);
-            if (cell_table_[at] == 0) {
-                cells_.push_back({key, i, {}});
-                cell_table_[at] = static_cast<std::uint32_t>(cells_.size());
-            }
-            cell = &cells_[cell_table_[at] - 1];
+        const std::uint64_t whole = std::uint64_t{key.kind} << 32 | key.place;
+        std::size_t at = static_cast<std::size_t>(whole * 0x9e3779b97f4a7c15ull >> 40) & (size - 1);
+        while (cell_table_[at] != 0 && !(cells_[cell_table_[at] - 1].key == key)) at = (at + 1) & (size - 1);
+        if (cell_table_[at] == 0) {
+            cells_.push_back({key, i, {}});
+            cell_table_[at] = static_cast<std::uint32_t>(cells_.size());
         }
-        out.point_of_sample[run.places[i]] = cell->colors.at(quarter_of(i), out);
+        out.point_of_sample[run.places[i]] = cells_[cell_table_[at] - 1].colors.at(quarter_of(i), out);
     }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 // Depths of a cell of a shadow map: the exact test of cover/exact.h with the lens closed, at all samples of the texels
-// that a triangle's box holds, sixteen at a time.
+// that a triangle's box holds, sixteen at a time; in large boxes only along the triangle (shadow_setup-inl.h).
 //
 // The camera's coverage stage (cover/cover_vectors.cpp) pays for bounds over lens and shutter, for work lists and depth
 // hierarchies. Here most triangles are about a texel, and testing the few samples around them costs less than knowing

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cover/front_to_back.h"
+#include "cover/wide_blur.h"
 #include "render/visibility.h"
 #include "support/isa.h"
 #include "support/soup.h"
@@ -255,7 +256,7 @@ TEST_P(CoverTwins, AgreeForTrianglesThatRushAtTheCamera) {
 
 // A mesh of triangles of about a pixel, all of which blur alike: what clusters are made of. The first ones of some
 // reach the camera plane.
-Frame make_mesh(Random& r, const Soup& soup) {
+Frame make_mesh(Random& r, const Soup& soup, std::uint32_t side = 40, double widest_circle = 12.0) {
     Soup none = soup;
     none.triangles = 0;
     none.classes = {Hard::kGeneric};
@@ -263,14 +264,15 @@ Frame make_mesh(Random& r, const Soup& soup) {
     Part& part = frame.parts[0];
     part.moves = soup.motion;
     part.segments = part.moves ? r.between(1, 4) : 1;
-    const std::uint32_t side = 40;
     part.vertex_count = (side + 1) * (side + 1);
     part.triangle_count = 2 * side * side;
     const float step = static_cast<float>(r.magnitude(0.2, 1.0)), reach = static_cast<float>(r.magnitude(0.5, 12.0));
+    const auto circle = static_cast<float>(r.magnitude(widest_circle / 24, widest_circle));
     const bool behind = r.chance(0.3);
     for (int knot = 0; knot <= (part.moves ? part.segments : 0); ++knot) {
         const auto at = [&] { return reach * static_cast<float>(r.unit() - 0.5); };
-        const float x = at(), y = at(), c = soup.defocus ? at() : 0.0f, w = 2.0f + static_cast<float>(r.unit());
+        const float x = at(), y = at(), c = soup.defocus ? at() * circle / reach : 0.0f,
+                    w = 2.0f + static_cast<float>(r.unit());
         for (std::uint32_t v = 0; v < part.vertex_count; ++v) {
             const auto jitter = [&] { return 0.3f * step * static_cast<float>(r.unit()); };
             const float vw = behind && v < 3 ? -1.0f : w + 0.1f * jitter();
@@ -309,6 +311,36 @@ TEST_P(CoverTwins, AgreeForClusters) {
         EXPECT_TRUE(std::is_permutation(listed.begin(), listed.end(), order.entries.begin(), order.entries.end()));
     }
     EXPECT_GT(4 * clustered, walked) << "many of these must be clusters, or nothing is tested here";
+}
+
+TEST(CoverTwinsOfOneFrame, AgreeForWideBlur) {
+    for (const Grouping grouping : {Grouping::kDefocus, Grouping::kBoth}) {
+        Random r(34);
+        int wide = 0, tiles = 0;
+        for (const int spp : {16, 16, 48, 64, 16}) {
+            Soup s;
+            s.motion = grouping == Grouping::kBoth;
+            s.width = 64;
+            s.height = 60;  // the lower tiles are cut
+            s.ratio = tiles % 3 == 1 ? 1.7 : 1.0;
+            if (tiles % 4 == 0) s.alpha = AlphaMode::kBlend;
+            const Frame frame = make_mesh(r, s, 8, 1500.0);
+            const SampleTable& samples = table(spp, grouping, s.ratio);
+            const PixelRect whole{0, s.width, 0, s.height};
+            EXPECT_GT(expect_twins(frame, samples, 32, whole), 0u);
+            const Bins bins(frame, 32, whole);
+            const auto is_wide = [&](const Tile& tile) {
+                return blurs_widely({frame, samples, bins.triangles(), bins.tile(tile.x0, tile.y0), tile, nullptr});
+            };
+            for (const int x : {0, 32}) {
+                wide += is_wide({x, 0, x + 32, 32});
+                EXPECT_FALSE(is_wide({x, 32, x + 32, 60}));
+                ++tiles;
+            }
+        }
+        EXPECT_GT(8 * wide, tiles) << wide << " of " << tiles
+                                   << ": some of these must be taken by the finer cells, or nothing is tested here";
+    }
 }
 
 // A table is arranged for one kind of blur, but holds for every frame.

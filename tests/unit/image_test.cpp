@@ -362,6 +362,12 @@ TEST(ToneCurve, EightBitsRoundTheSrgbCurve) {
     for (float x = 0.0f; x <= 1.0f; x += 0.00037f) {
         ASSERT_NEAR(to_srgb8(x), 255.0 * srgb_encode(x), 0.5 + 1e-4);
     }
+    for (int value = 0; value < 255; ++value) {
+        const auto step = static_cast<float>(srgb_decode((value + 0.5) / 255.0));
+        EXPECT_EQ(to_srgb8(step), value + 1);
+        EXPECT_EQ(to_srgb8(std::nextafter(step, 0.0f)), value);
+    }
+    EXPECT_EQ(to_srgb8(INFINITY), 255);
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ TEST(SampleTable, HasTheSameCatsEyeHoweverItIsAsked) {
             for (const auto& [cx, cy] : {std::pair(0, 0), std::pair(19, 3), std::pair(7, 10)}) {
                 const auto cell = table.cell(cx, cy, cell_room);
                 const auto domains = table.domains(cx, cy, domain_room);
-                for (const SampleTable::Stratum& s : table.strata(cx, cy))
+                for (const Stratum& s : table.strata(cx, cy))
                     for (int b = 0; b < kBlocksPerCell; ++b) {
                         if ((s.blocks >> b & 1u) == 0) continue;
                         const int bx = cx * kCellBlocks + b % kCellBlocks, by = cy * kCellBlocks + b / kCellBlocks;
@@ -203,7 +203,7 @@ TEST(SampleTable, HoldsEverySampleOfEveryPatternOnce) {
                 std::vector<Domain> room;
                 const auto domains = table.domains(1, 2, room);
                 ASSERT_LE(domains.size(), 64u);
-                for (const SampleTable::Stratum& s : table.strata(1, 2)) {
+                for (const Stratum& s : table.strata(1, 2)) {
                     ASSERT_LT(s.stratum, domains.size());
                     const Domain& d = domains[s.stratum];
                     for (int b = 0; b < kBlocksPerCell; ++b) {

@@ -236,7 +236,7 @@ TEST(SampleTable, PutsEveryVectorOfACellInOneStratumWhoseDomainHoldsItsSamples) 
             ASSERT_LE(domains.size(), 64u);
             for (const auto& [cx, cy] : {std::pair(0, 0), std::pair(1, 5), std::pair(40, 3)}) {
                 std::vector<std::uint64_t> seen(table.slots(), 0);
-                for (const SampleTable::Stratum& s : table.strata(cx, cy)) {
+                for (const Stratum& s : table.strata(cx, cy)) {
                     ASSERT_LT(s.stratum, domains.size());
                     ASSERT_EQ(seen[s.slot] & s.blocks, 0u) << "twice";
                     seen[s.slot] |= s.blocks;
@@ -277,7 +277,7 @@ TEST(SampleTable, DelaysSamplesOfARollingShutterWithinTheDomainsOfTheirCell) {
                 for (const auto& [cx, cy] : {std::pair(0, 0), std::pair(6, 4), std::pair(2, 3)}) {
                     const auto cell = table.cell(cx, cy, cell_room);
                     const auto domains = table.domains(cx, cy, domain_room);
-                    for (const SampleTable::Stratum& s : table.strata(cx, cy))
+                    for (const Stratum& s : table.strata(cx, cy))
                         for (int b = 0; b < kBlocksPerCell; ++b) {
                             if ((s.blocks >> b & 1) == 0) continue;
                             const int bx = cx * kCellBlocks + b % kCellBlocks, by = cy * kCellBlocks + b / kCellBlocks;
