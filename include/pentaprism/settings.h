@@ -166,7 +166,7 @@ struct MethodSettings {
     Sampler sampler = Sampler::kStratified;
     std::uint32_t seed = 0;  ///< of the sample pattern
     int threads = 0;         ///< 0: all processors
-    int tile_size = 32;      ///< pixels, 8, 16 or 32: never changes the picture
+    int tile_size = 32;      ///< pixels, 8, 16 or 32 (then 16 from 256 spp on): never changes the picture
 };
 
 struct RenderSettings {

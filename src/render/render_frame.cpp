@@ -54,6 +54,17 @@ void decide(FrameTiles& frame, std::span<const Tile> tiles, Pool<FrameTiles::Wor
     });
 }
 
+// From this many samples a pixel on, those of a whole cell and what they see outgrow the cache: quarters of it are
+// faster then, and slower below (docs/develop/performance.md, Samples).
+constexpr int kSppOfSmallTiles = 256, kSmallTile = 16;
+
+RenderSettings in_fast_tiles(RenderSettings settings) {
+    if (settings.method.tile_size == kCellSize && settings.method.backend == Backend::kCpu &&
+        !settings.image.target_error && settings.image.spp >= kSppOfSmallTiles)
+        settings.method.tile_size = kSmallTile;
+    return settings;
+}
+
 }  // namespace
 
 Renderer::Renderer(const Scene& scene) : scene_(scene), textures_(make_textures(scene)) {}
@@ -81,7 +92,7 @@ void Renderer::run(const RenderSettings& settings, double number, RenderStats& s
 
 void Renderer::render(const RenderSettings& settings, double number, RowSink& sink, RenderStats& stats,
                       const Progress& progress) {
-    run(settings, number, stats, [&](FrameTiles& frame) {
+    run(in_fast_tiles(settings), number, stats, [&](FrameTiles& frame) {
         PictureRows picture(frame.info(), frame.reach(), settings.image.exposure, sink);
         const std::vector<Tile>& tiles = frame.tiles();
         const std::vector<Tile> to_decide = frame.tiles_to_decide(tiles);

@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "sample/aperture.h"
+#include "sample/motion_pattern.h"
 #include "sample/net.h"
 #include "sample/pixel_pattern.h"
 
@@ -50,6 +51,10 @@ RawSample pattern_sample(Sampler sampler, int px, int py, int index, int spp, st
     return {p.x, p.y, p.u, p.v, 0, p.t >> 8};
 }
 
+bool is_by_time(Grouping grouping) {
+    return grouping == Grouping::kMotion || grouping == Grouping::kTime;
+}
+
 // Slots of the samples of one pixel of such a pattern, so that those of a vector are near each other where they blur:
 // by lens cell, of both or one coordinate after the other, or by time.
 void order_by_blur(std::span<const RawSample> samples, Grouping grouping, std::span<std::uint16_t> slot_of_index) {
@@ -60,7 +65,7 @@ void order_by_blur(std::span<const RawSample> samples, Grouping grouping, std::s
     std::vector<std::pair<std::uint64_t, std::uint16_t>> keys;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const RawSample& s = samples[i];
-        const std::uint64_t cell = grouping == Grouping::kMotion ? 0 : (s.v >> 30) * 4 + (s.u >> 30);
+        const std::uint64_t cell = is_by_time(grouping) ? 0 : (s.v >> 30) * 4 + (s.u >> 30);
         keys.emplace_back(cell << 32 | s.jitter_t, static_cast<std::uint16_t>(i));
     }
     std::sort(keys.begin(), keys.end());
@@ -75,6 +80,7 @@ int stratum_of(Grouping grouping, int spp, std::uint32_t base_u, std::uint32_t b
         case Grouping::kStill:
             return 0;
         case Grouping::kMotion:
+        case Grouping::kTime:
             return spp <= 64 ? slot : slot * 64 / spp;
         case Grouping::kDefocus:
             return lens_cell;
@@ -100,6 +106,7 @@ int stratum_count(Grouping grouping, int spp) {
         case Grouping::kStill:
             return 1;
         case Grouping::kMotion:
+        case Grouping::kTime:
             return std::min(spp, kMaxStrata);
         case Grouping::kDefocus:
             return 16;
@@ -138,8 +145,9 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
 
     parallel_for(blocks, [&](std::size_t b) {
         const int cell = static_cast<int>(b) / kBlocksPerCell, in_cell = static_cast<int>(b) % kBlocksPerCell;
-        const BlockPattern block_pattern(spp, seed, cell % cells * kCellBlocks + in_cell % kCellBlocks,
-                                         cell / cells * kCellBlocks + in_cell / kCellBlocks);
+        const int bx = cell % cells * kCellBlocks + in_cell % kCellBlocks;
+        const int by = cell / cells * kCellBlocks + in_cell / kCellBlocks;
+        const BlockPattern block_pattern(spp, seed, bx, by);
         domains[b].fill(Domain::empty());
         const auto store = [&](int lane, int index, const SamplePoint& sample, int slot, int s) {
             SampleVector& vector = vectors_[b * spp + slot];
@@ -169,7 +177,11 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
             return;
         }
         const std::vector<std::uint16_t> order = by_lens ? block_pattern.lens_order() : std::vector<std::uint16_t>();
+        std::optional<MotionPattern> motion;
+        if (grouping == Grouping::kMotion) motion.emplace(spp, seed, bx, by);
+        std::array<MotionPattern::Place, kLanes> moving;
         for (int index = 0; index < spp; ++index) {
+            if (motion) moving = motion->in_stratum(index);
             const std::uint32_t base_u = block_pattern.base_u(index), base_v = block_pattern.base_v(index);
             for (int lane = 0; lane < kLanes; ++lane) {
                 RawSample raw = block_pattern.sample(lane, index);
@@ -178,9 +190,13 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
                     const RawTriple triple = shared->triple(shared->triple_of(pixel.x, pixel.y, index));
                     raw = {raw.x, raw.y, triple.u, triple.v, triple.stratum_t, triple.jitter_t};
                 }
-                const int slot = by_lens                         ? order[index]
-                                 : grouping == Grouping::kMotion ? static_cast<int>(raw.stratum_t)
-                                                                 : index;
+                if (motion) {
+                    const MotionPattern::Place& place = moving[lane];
+                    raw = {place.x, place.y, raw.u, raw.v, static_cast<std::uint32_t>(index), place.jitter_t};
+                }
+                const int slot = by_lens                ? order[index]
+                                 : is_by_time(grouping) ? static_cast<int>(raw.stratum_t)
+                                                        : index;
                 if (wants_fine_lens)
                     fine_cells[(b * spp + slot) * kLanes + lane] =
                         static_cast<std::uint8_t>((raw.v >> 29) * FineLens::kSide + (raw.u >> 29));

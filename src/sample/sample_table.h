@@ -23,8 +23,9 @@ struct SamplePoint {
     float x = 0, y = 0, u = 0, v = 0, t = 0;
 };
 
-/// Which coordinates the samples of one vector share closely: those that blur.
-enum class Grouping : std::uint8_t { kStill, kMotion, kDefocus, kBoth };
+/// Which coordinates the samples of one vector share closely: those that blur. kTime groups as kMotion does samples
+/// that are those of the other groupings: shadow maps, of which pictures of any blur make use.
+enum class Grouping : std::uint8_t { kStill, kMotion, kDefocus, kBoth, kTime };
 
 /// The samples of a cell by their lens position and time, for patterns that share these among pixels.
 struct SharedSamples {

@@ -155,7 +155,7 @@ namespace pentaprism {
 
 ShadowSamples::ShadowSamples(std::uint32_t seed)
     : seed_(seed),
-      table_(kSamples, seed, Lens{}, Grouping::kMotion),
+      table_(kSamples, seed, Lens{}, Grouping::kTime),
       cells_(std::make_unique<Cell[]>(kPeriod * kPeriod)) {
     std::vector<SampleVector> room;
     for (int cy = 0; cy < kPeriod; ++cy)
@@ -166,7 +166,7 @@ ShadowSamples::ShadowSamples(std::uint32_t seed)
                 const int texel = i / kSamples, column = texel % kCellSize, row = texel / kCellSize;
                 const int block = row / kBlockSize * kCellBlocks + column / kBlockSize;
                 const int lane = row % kBlockSize * kBlockSize + column % kBlockSize;
-                // Grouped by motion, slots are by time.
+                // Grouped by time, slots are by time.
                 const SampleVector& vector = vectors[block * kSamples + i % kSamples];
                 cell.x[i] = vector.x[lane], cell.y[i] = vector.y[lane], cell.t[i] = vector.t[lane];
             }

@@ -20,6 +20,7 @@ struct LaidOut {
     const char* scene;
     bool defocus;
     PixelRect part;  // of 1024x768, where much blurs
+    double most;     // that the variance of block means may be, over that of free sampling
 };
 
 class Look {
@@ -87,23 +88,21 @@ Ratio ratio(const Pictures& a, const Pictures& b) {
     return {variance(a, -1) / variance(b, -1), std::sqrt((kSeeds - 1.0) / kSeeds * (squares - kSeeds * mean * mean))};
 }
 
-TEST(SampleLayout, BlockMeansOfFramesVaryAsThoseOfFreePixels) {
-    // Under motion alone 0.75 is wanted and not reached: docs/develop/sample-layout.md.
-    constexpr double kMost = 1.1;
-    for (const LaidOut& which : {LaidOut{"builtin:fairy-forest", true, {160, 352, 288, 416}},
-                                 LaidOut{"builtin:car", false, {480, 736, 192, 320}}}) {
+TEST(SampleLayout, BlockMeansOfFramesVaryNoMoreThanThoseOfFreePixelsAndLessUnderMotionAlone) {
+    for (const LaidOut& which : {LaidOut{"builtin:fairy-forest", true, {160, 352, 288, 416}, 1.1},
+                                 LaidOut{"builtin:car", false, {480, 736, 192, 320}, 0.75}}) {
         const Look look(which);
         for (const int side : {4, 8}) {
             const Pictures free = look.render(Sampler::kSobol, VisibilityMethod::kStochastic, side);
             const Ratio ours = ratio(look.render(Sampler::kStratified, VisibilityMethod::kStochastic, side), free);
             std::printf("  %s, %dx%d: %.2f +- %.2f\n", which.scene, side, side, ours.value, ours.error);
             ASSERT_LT(ours.error, 0.12) << "too few seeds to say anything";
-            EXPECT_LT(ours.value - 3 * ours.error, kMost) << which.scene << ", " << side;
+            EXPECT_LT(ours.value - 3 * ours.error, which.most) << which.scene << ", " << side;
             // Samples that all pixels share are seen to be too much.
             const Ratio shared = ratio(look.render(Sampler::kStratified, VisibilityMethod::kAccumulation, side), free);
             std::printf("  %s, %dx%d, accumulation: %.2f +- %.2f\n", which.scene, side, side, shared.value,
                         shared.error);
-            EXPECT_GT(shared.value - 3 * shared.error, kMost) << which.scene << ", " << side;
+            EXPECT_GT(shared.value - 3 * shared.error, which.most) << which.scene << ", " << side;
         }
     }
 }

@@ -62,7 +62,7 @@ Frame in_texels(Frame frame) {
 TEST(ShadowRaster, ACellHoldsWhatTheExactTestSeesOnEveryCpuTarget) {
     support::Random random(7);
     const ShadowSamples samples(3);
-    const SampleTable table(ShadowSamples::kSamples, 3, Lens{}, Grouping::kMotion);
+    const SampleTable table(ShadowSamples::kSamples, 3, Lens{}, Grouping::kTime);
     std::size_t hits_seen = 0, differ = 0, wrong = 0;
     for (int round = 0; round < 10; ++round)
         for (const bool perspective : {true, false}) {
