@@ -28,8 +28,7 @@ void add_image_options(CLI::App& command, ImageSettings& image) {
     CLI::Option* target =
         add_value(command, group, "--target-error", "E",
                   "Give each 4x4 pixels --spp to --max-spp samples, more where they are noisier: 64 where these bring "
-                  "the error down "
-                  "to E; 0.01 is a hundredth of the way from black to white (default: --spp everywhere)",
+                  "the error down to E; 0.01 is a hundredth of the way from black to white (default: --spp everywhere)",
                   [&](const std::string& text) { image.target_error = parse_number("--target-error", text); });
     add_value(
         command, group, "--max-spp", "N", "The most samples per pixel that --target-error gives (default 1024)",

@@ -13,19 +13,17 @@ struct Spread {
 };
 
 Spread spread_of(const Frame& frame, const BinnedTriangle& binned) {
-    const Part& part = frame.parts[frame.part_of[binned.triangle]];
-    const std::size_t first = part.moves ? std::size_t{binned.segment} * part.vertex_count : 0;
-    const std::size_t step = part.moves ? part.vertex_count : 0;
+    const MovingTriangle T = moving_triangle(frame, binned.triangle, binned.segment);
     glm::vec2 least[2], most[2];
     Spread spread;
     for (int end = 0; end < 2; ++end)
         for (int i = 0; i < 3; ++i) {
-            const glm::vec4 p = frame.points[frame.corners[3 * std::size_t{binned.triangle} + i] + first + end * step];
-            if (!(p.z > 0)) return {};
-            const glm::vec2 at = glm::vec2(p) / p.z;
+            const float w = T.w[i][end];
+            if (!(w > 0)) return {};
+            const glm::vec2 at = glm::vec2(T.x[i][end], T.y[i][end]) / w;
             least[end] = i == 0 ? at : glm::min(least[end], at);
             most[end] = i == 0 ? at : glm::max(most[end], at);
-            spread.radius = std::max(spread.radius, std::abs(p.w) / p.z);
+            spread.radius = std::max(spread.radius, std::abs(T.c[i][end]) / w);
         }
     spread.size = 0.5f * (most[0] - least[0] + most[1] - least[1]);
     spread.path = 0.5f * glm::abs(least[1] + most[1] - least[0] - most[0]);
