@@ -37,9 +37,6 @@ struct Ellipses {
     alignas(64) Lanes u, v, step_u, step_v, minor, taps;
 };
 
-HWY_INLINE Vec product3(Vec a, Vec b, Vec c) {
-    return hn::Mul(hn::Mul(a, b), c);
-}
 HWY_INLINE Vec larger(Vec a, Vec b) {
     return hn::IfThenElse(hn::Lt(a, b), b, a);
 }
