@@ -41,7 +41,8 @@ void project(const SeenSamples::Batch& batch) {
     const F f;
     const I d;
     const LocalTriangle& T = *batch.triangle;
-    const Vec zero = hn::Zero(f), segments = hn::Set(f, T.segments), last = hn::Set(f, T.segments - 1.0f);
+    const Vec zero = hn::Zero(f), one = hn::Set(f, 1.0f), segments = hn::Set(f, T.segments),
+              last = hn::Set(f, T.segments - 1.0f);
     for (int first = 0; first < kLanes; first += kWidth) {
         const IVec index = hn::BitCast(d, hn::LoadU(U(), batch.indices + first));
         const IVec at = hn::Add(hn::Mul(hn::ShiftRight<4>(index), hn::Set(d, kFloatsPerVector)),
@@ -65,12 +66,13 @@ void project(const SeenSamples::Batch& batch) {
                           product_difference(x[0], y[1], x[1], y[0])};
         const Vec sum = hn::Add(hn::Add(e[0], e[1]), e[2]);
         // Rounding, and slivers' samples, may lie just outside.
+        const Vec over_sum = hn::Div(one, sum);
         Vec inside[3];
-        for (int k = 0; k < 3; ++k) inside[k] = hn::Max(hn::Div(e[k], sum), zero);
-        const Vec total = hn::Add(hn::Add(inside[0], inside[1]), inside[2]);
+        for (int k = 0; k < 3; ++k) inside[k] = hn::Max(hn::Mul(e[k], over_sum), zero);
+        const Vec total = hn::Add(hn::Add(inside[0], inside[1]), inside[2]), over_total = hn::Div(one, total);
         const Mask usable = hn::And(hn::IsFinite(total), hn::Gt(total, zero));
         for (int k = 0; k < 3; ++k)
-            hn::BlendedStore(hn::IfThenElse(usable, hn::Div(inside[k], total), hn::Set(f, 1.0f / 3.0f)), here, f,
+            hn::BlendedStore(hn::IfThenElse(usable, hn::Mul(inside[k], over_total), hn::Set(f, 1.0f / 3.0f)), here, f,
                              batch.b[k] + first);
         hn::BlendedStore(t, here, f, batch.t + first);
         const U unsigned_lanes;
@@ -123,13 +125,14 @@ void find_cells(const SeenSamples::Batch& batch) {
             return plus_product(plus_product(hn::Mul(b[0], hn::Set(f, corner[0])), b[1], hn::Set(f, corner[1])), b[2],
                                 hn::Set(f, corner[2]));
         };
-        const Vec w = blend(T.w), x = hn::Div(blend(T.x), w), y = hn::Div(blend(T.y), w);
+        const Vec w = blend(T.w), over_w = hn::Div(hn::Set(f, 1.0f), w);
+        const Vec x = hn::Mul(blend(T.x), over_w), y = hn::Mul(blend(T.y), over_w);
         const Mask usable =
             hn::And(hn::Ge(w, hn::Set(f, T.w_near)), hn::Lt(hn::Max(hn::Abs(x), hn::Abs(y)), hn::Set(f, 16384.0f)));
         const Vec motion_w = blend(T.motion_w);
-        const Vec vx = hn::Div(hn::Sub(blend(T.motion_x), hn::Mul(motion_w, x)), w);
-        const Vec vy = hn::Div(hn::Sub(blend(T.motion_y), hn::Mul(motion_w, y)), w);
-        const Vec coc = hn::Div(blend(T.coc), w), lens2 = hn::Mul(hn::Set(f, 3.0f), hn::Mul(coc, coc));
+        const Vec vx = hn::Mul(hn::Sub(blend(T.motion_x), hn::Mul(motion_w, x)), over_w);
+        const Vec vy = hn::Mul(hn::Sub(blend(T.motion_y), hn::Mul(motion_w, y)), over_w);
+        const Vec coc = hn::Mul(blend(T.coc), over_w), lens2 = hn::Mul(hn::Set(f, 3.0f), hn::Mul(coc, coc));
         const IVec shorter = level(f, lens2, batch.least_level);
         const IVec longer = level(f, plus_product(plus_product(lens2, vx, vx), vy, vy), batch.least_level);
 
