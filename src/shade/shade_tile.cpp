@@ -1,6 +1,8 @@
 #include "shade/shade_tile.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
 #include "bound/local_triangle.h"
@@ -50,8 +52,8 @@ struct PointSamples {
 };
 
 // Of a pixel in the picture, for what has to be random in it.
-std::uint32_t seed_of(const Tile& tile, int pixel, std::uint32_t salt) {
-    const int block = pixel / kLanes, lane = pixel % kLanes;
+std::uint32_t seed_of(const Tile& tile, std::uint32_t pixel, std::uint32_t salt) {
+    const int block = static_cast<int>(pixel) / kLanes, lane = static_cast<int>(pixel) % kLanes;
     const int x = tile.cell_x() * kCellSize + block % kCellBlocks * kBlockSize + lane % kBlockSize;
     const int y = tile.cell_y() * kCellSize + block / kCellBlocks * kBlockSize + lane / kBlockSize;
     return mix(mix(static_cast<std::uint32_t>(x) + 0x9e3779b9u * salt) + static_cast<std::uint32_t>(y));
@@ -71,6 +73,7 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
                                const Hits& hits, TileShade& out, bool roughly) {
     scene_ = &scene;
     by_quarters_ = scene.shadows().move();
+    per_block_ = static_cast<std::uint32_t>(samples.slots()) * kLanes;
     shaded_ = 0;
     waiting_.start(scene);
     clear(tile, samples.slots(), out.point_of_sample);
@@ -88,7 +91,7 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
         for (std::size_t i = 0; i < samples_.triangle_count(); ++i) {
             const std::uint32_t triangle = samples_.triangle(i);
             const ShadedTriangle shaded(scene, triangle, samples.spp());
-            const Run run{shaded, triangle, samples_.places(i), samples_.pixels(i)};
+            const Run run{shaded, triangle, samples_.places(i)};
             const bool cells = in_cells && (roughly || !shaded.is_sharp());
             seen_.see(triangle, run.places, cells ? &shaded.cells() : nullptr);
             if (cells) {
@@ -107,6 +110,7 @@ void TileShader::shade_misses(const ShadingScene& scene, const SampleTable& samp
                               TileShade& out) {
     if (!scene.has_background()) return;
     scene_ = &scene;
+    per_block_ = static_cast<std::uint32_t>(samples.slots()) * kLanes;
     const SampleVector* vectors = samples.cell(tile.cell_x(), tile.cell_y(), room_).data();
     const int blocks_per_chunk = std::max(1, kSamplesPerChunk / (kLanes * samples.slots()));
     for (int block = 0; block < kBlocksPerCell; block += blocks_per_chunk) {
@@ -126,25 +130,31 @@ WaitingPoint& TileShader::add_point(const Run& run, const glm::vec3& barycentric
 // The samples of one pixel share a point, or none do; those that see the back are another point.
 void TileShader::shade_pixels(const Run& run, const Tile& tile, TileShade& out) {
     const bool each = scene_->options().rate == ShadingRate::kSample;
-    for (std::size_t begin = 0; begin < run.places.size();) {
-        const std::uint16_t pixel = run.pixels[begin];
-        PointSamples points[2];
-        const std::size_t last = each ? begin + 1 : run.places.size();
-        for (; begin < last && run.pixels[begin] == pixel; ++begin) {
-            const glm::vec3 b = seen_.barycentrics(begin);
-            PointSamples& point = points[seen_.key(begin).front()];
+    // Of each pixel of a block: seen from the back, from the front.
+    static thread_local std::array<PointSamples, 2 * kLanes> points;
+    for (std::size_t i = 0; i < run.places.size();) {
+        const std::uint32_t block = run.places[i] / per_block_, end = (block + 1) * per_block_;
+        std::uint32_t used = 0;
+        do {
+            const std::uint32_t which = 2 * (run.places[i] % kLanes) + (seen_.key(i).front() ? 1 : 0);
+            PointSamples& point = points[which];
+            if ((used >> which & 1u) == 0) point = {};
+            used |= 1u << which;
+            const glm::vec3 b = seen_.barycentrics(i);
             point.sum += b;
             ++point.count;
-            const int quarter = quarter_of(begin);
+            const int quarter = quarter_of(i);
             point.quarter[quarter].add(b);
-            out.point_of_sample[run.places[begin]] = point.colors.at(quarter, out);
-        }
-        for (int front = 0; front < 2; ++front) {
-            const PointSamples& point = points[front];
-            if (point.count == 0) continue;
+            out.point_of_sample[run.places[i]] = point.colors.at(quarter, out);
+            ++i;
+        } while (!each && i < run.places.size() && run.places[i] < end);
+        for (; used != 0; used &= used - 1) {
+            const int which = std::countr_zero(used);
+            const PointSamples& point = points[which];
+            const bool front = which % 2 != 0;
             const glm::vec3 b = point.sum / static_cast<float>(point.count);
-            WaitingPoint& waiting = add_point(run, b, front != 0, ShadingCell{}, out);
-            waiting.seed = seed_of(tile, pixel, static_cast<std::uint32_t>(front));
+            WaitingPoint& waiting = add_point(run, b, front, ShadingCell{}, out);
+            waiting.seed = seed_of(tile, block * kLanes + static_cast<std::uint32_t>(which / 2), front ? 1u : 0u);
             waiting.colors = point.colors;
             for (int q = 0; q < kQuarters; ++q) point.quarter[by_quarters_ ? q : 0].write(q, waiting.shadow);
         }
@@ -189,20 +199,28 @@ void TileShader::shade_cells(const Run& run, TileShade& out) {
 // The mean of what a pixel's misses see of the surroundings, each along its own ray.
 void TileShader::shade_background(const SampleVector* samples, const Tile& tile, TileShade& out) {
     const CellCentre centre = cell_centre(scene_->frame().view, tile.cell_x(), tile.cell_y());
-    const std::span<const TileSamples::Miss> misses = samples_.misses();
-    for (std::size_t begin = 0; begin < misses.size();) {
-        const std::uint16_t pixel = misses[begin].pixel;
-        glm::vec3 sum(0.0f);
-        float count = 0.0f;
-        for (; begin < misses.size() && misses[begin].pixel == pixel; ++begin) {
-            const std::uint32_t place = misses[begin].place, lane = place % kLanes;
+    const std::span<const std::uint32_t> misses = samples_.misses();
+    for (std::size_t i = 0; i < misses.size();) {
+        const std::uint32_t end = (misses[i] / per_block_ + 1) * per_block_;
+        glm::vec4 sums[kLanes] = {};  // and how many
+        std::uint32_t points[kLanes];
+        for (; i < misses.size() && misses[i] < end; ++i) {
+            const std::uint32_t place = misses[i], lane = place % kLanes;
+            if (sums[lane].w == 0.0f) {
+                points[lane] = static_cast<std::uint32_t>(out.colors.size());
+                out.colors.emplace_back();
+            }
             const SampleVector& s = samples[place / kLanes];
-            sum += scene_->background(centre.x + s.x[lane], centre.y + s.y[lane], s.u[lane], s.v[lane], s.t[lane]);
-            count += 1.0f;
-            out.point_of_sample[place] = static_cast<std::uint32_t>(out.colors.size());
+            sums[lane] += glm::vec4(
+                scene_->background(centre.x + s.x[lane], centre.y + s.y[lane], s.u[lane], s.v[lane], s.t[lane]), 1.0f);
+            out.point_of_sample[place] = points[lane];
         }
-        out.colors.push_back(contained(sum / count));
-        out.colors.back().w = 0.0f;
+        for (int lane = 0; lane < kLanes; ++lane) {
+            if (sums[lane].w == 0.0f) continue;
+            glm::vec4& color = out.colors[points[lane]];
+            color = contained(glm::vec3(sums[lane]) / sums[lane].w);
+            color.w = 0.0f;
+        }
     }
 }
 

@@ -39,7 +39,6 @@ class TileShader {
         const ShadedTriangle& triangle;
         std::uint32_t number;
         std::span<const std::uint32_t> places;
-        std::span<const std::uint16_t> pixels;
     };
     /// A cell of the triangle in hand, and the side from which it is seen.
     struct SharedCell {
@@ -59,7 +58,8 @@ class TileShader {
     }
 
     const ShadingScene* scene_ = nullptr;
-    bool by_quarters_ = false;  // colours change while the shutter is open
+    bool by_quarters_ = false;     // colours change while the shutter is open
+    std::uint32_t per_block_ = 0;  // samples of a block
     WaitingPoints waiting_;
     TileSamples samples_;
     SeenSamples seen_;
