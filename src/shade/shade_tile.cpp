@@ -1,9 +1,8 @@
 #include "shade/shade_tile.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "bound/local_triangle.h"
 #include "sample/net.h"
@@ -82,6 +81,7 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
     seen_.start(scene.frame(), cell_centre(scene.frame().view, tile.cell_x(), tile.cell_y()), vectors,
                 roughly ? kRoughLevel : 0);
 
+    const auto indices = samples.indices_of_cell(tile.cell_x(), tile.cell_y());
     // Of what does not blur, pixels are the cells; there the mean of the samples is better than the middle.
     const bool in_cells = scene.options().rate == ShadingRate::kDecoupled;
     const int blocks_per_chunk = std::max(1, kSamplesPerChunk / (kLanes * samples.slots()));
@@ -91,8 +91,9 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
         for (std::size_t i = 0; i < samples_.triangle_count(); ++i) {
             const std::uint32_t triangle = samples_.triangle(i);
             const ShadedTriangle shaded(scene, triangle, samples.spp());
-            const Run run{shaded, triangle, samples_.places(i)};
             const bool cells = in_cells && (roughly || !shaded.is_sharp());
+            const std::span<const std::uint32_t> places = samples_.places(i);
+            const Run run{shaded, triangle, cells ? places : by_pixel(places, indices)};
             seen_.see(triangle, run.places, cells ? &shaded.cells() : nullptr);
             if (cells) {
                 find_cells(run, out);
@@ -127,34 +128,50 @@ WaitingPoint& TileShader::add_point(const Run& run, const glm::vec3& barycentric
     return point;
 }
 
+// The samples pixel by pixel in index order, which says what is looked up of shadows: the same on any backend.
+std::span<const std::uint32_t> TileShader::by_pixel(std::span<const std::uint32_t> places,
+                                                    std::span<const std::uint16_t> indices) {
+    by_pixel_.resize(places.size());
+    for (std::size_t begin = 0; begin < places.size();) {
+        const std::uint32_t block_end = (places[begin] / per_block_ + 1) * per_block_;
+        std::size_t ends[kLanes + 1] = {}, end = begin;  // of each pixel's samples; at first their number
+        for (; end < places.size() && places[end] < block_end; ++end) ++ends[places[end] % kLanes + 1];
+        std::partial_sum(std::begin(ends), std::end(ends), std::begin(ends));
+        const auto first = by_pixel_.begin() + static_cast<std::ptrdiff_t>(begin);
+        for (std::size_t i = begin; i < end; ++i)
+            first[static_cast<std::ptrdiff_t>(ends[places[i] % kLanes]++)] = places[i];
+        const auto by_index = [&](std::uint32_t a, std::uint32_t b) { return indices[a] < indices[b]; };
+        for (int lane = 0; lane < kLanes; ++lane)
+            std::sort(first + static_cast<std::ptrdiff_t>(lane == 0 ? 0 : ends[lane - 1]),
+                      first + static_cast<std::ptrdiff_t>(ends[lane]), by_index);
+        begin = end;
+    }
+    return by_pixel_;
+}
+
 // The samples of one pixel share a point, or none do; those that see the back are another point.
 void TileShader::shade_pixels(const Run& run, const Tile& tile, TileShade& out) {
     const bool each = scene_->options().rate == ShadingRate::kSample;
-    // Of each pixel of a block: seen from the back, from the front.
-    static thread_local std::array<PointSamples, 2 * kLanes> points;
-    for (std::size_t i = 0; i < run.places.size();) {
-        const std::uint32_t block = run.places[i] / per_block_, end = (block + 1) * per_block_;
-        std::uint32_t used = 0;
-        do {
-            const std::uint32_t which = 2 * (run.places[i] % kLanes) + (seen_.key(i).front() ? 1 : 0);
-            PointSamples& point = points[which];
-            if ((used >> which & 1u) == 0) point = {};
-            used |= 1u << which;
-            const glm::vec3 b = seen_.barycentrics(i);
+    const auto pixel_of = [&](std::uint32_t place) { return place / per_block_ * kLanes + place % kLanes; };
+    for (std::size_t begin = 0; begin < run.places.size();) {
+        const std::uint32_t pixel = pixel_of(run.places[begin]);
+        PointSamples points[2];
+        const std::size_t last = each ? begin + 1 : run.places.size();
+        for (; begin < last && pixel_of(run.places[begin]) == pixel; ++begin) {
+            const glm::vec3 b = seen_.barycentrics(begin);
+            PointSamples& point = points[seen_.key(begin).front()];
             point.sum += b;
             ++point.count;
-            const int quarter = quarter_of(i);
+            const int quarter = quarter_of(begin);
             point.quarter[quarter].add(b);
-            out.point_of_sample[run.places[i]] = point.colors.at(quarter, out);
-            ++i;
-        } while (!each && i < run.places.size() && run.places[i] < end);
-        for (; used != 0; used &= used - 1) {
-            const int which = std::countr_zero(used);
-            const PointSamples& point = points[which];
-            const bool front = which % 2 != 0;
+            out.point_of_sample[run.places[begin]] = point.colors.at(quarter, out);
+        }
+        for (int front = 0; front < 2; ++front) {
+            const PointSamples& point = points[front];
+            if (point.count == 0) continue;
             const glm::vec3 b = point.sum / static_cast<float>(point.count);
-            WaitingPoint& waiting = add_point(run, b, front, ShadingCell{}, out);
-            waiting.seed = seed_of(tile, block * kLanes + static_cast<std::uint32_t>(which / 2), front ? 1u : 0u);
+            WaitingPoint& waiting = add_point(run, b, front != 0, ShadingCell{}, out);
+            waiting.seed = seed_of(tile, pixel, static_cast<std::uint32_t>(front));
             waiting.colors = point.colors;
             for (int q = 0; q < kQuarters; ++q) point.quarter[by_quarters_ ? q : 0].write(q, waiting.shadow);
         }

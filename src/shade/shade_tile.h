@@ -46,6 +46,8 @@ class TileShader {
         std::size_t first;  ///< the sample that was first to see it
         QuarterColors colors;
     };
+    std::span<const std::uint32_t> by_pixel(std::span<const std::uint32_t> places,
+                                            std::span<const std::uint16_t> indices);
     void shade_pixels(const Run& run, const Tile& tile, TileShade& out);
     void find_cells(const Run& run, TileShade& out);
     void shade_cells(const Run& run, TileShade& out);
@@ -65,6 +67,7 @@ class TileShader {
     SeenSamples seen_;
     std::int64_t shaded_ = 0;
     std::vector<SampleVector> room_;
+    std::vector<std::uint32_t> by_pixel_;
     std::vector<SharedCell> cells_;
     std::vector<std::uint32_t> cell_table_;  // open addressing: index into cells_ + 1, or 0
 };
