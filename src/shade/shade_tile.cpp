@@ -23,9 +23,9 @@ void write_lane(const glm::vec3& barycentrics, int lane, ShadowPoint& out) {
 // Barycentrics of a few samples, evenly chosen from any number of them.
 class FewPoints {
   public:
-    // Every `stride`-th is kept; when there are too many, every other one is dropped.
+    // Every stride-th is kept, a power of two; when there are too many, every other one is dropped.
     void add(const glm::vec3& b) {
-        if (seen_++ % stride_ != 0) return;
+        if ((seen_++ & (stride_ - 1)) != 0) return;
         if (count_ == kLookups) {
             for (int i = 1; i < kLookups / 2; ++i) points_[i] = points_[2 * i];
             count_ = kLookups / 2;
@@ -82,6 +82,7 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
                 roughly ? kRoughLevel : 0);
 
     const auto indices = samples.indices_of_cell(tile.cell_x(), tile.cell_y());
+    const bool sorted = TileSamples::is_by_pixel(samples);
     // Of what does not blur, pixels are the cells; there the mean of the samples is better than the middle.
     const bool in_cells = scene.options().rate == ShadingRate::kDecoupled;
     const int blocks_per_chunk = std::max(1, kSamplesPerChunk / (kLanes * samples.slots()));
@@ -93,7 +94,7 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
             const ShadedTriangle shaded(scene, triangle, samples.spp());
             const bool cells = in_cells && (roughly || !shaded.is_sharp());
             const std::span<const std::uint32_t> places = samples_.places(i);
-            const Run run{shaded, triangle, cells ? places : by_pixel(places, indices)};
+            const Run run{shaded, triangle, cells || sorted ? places : by_pixel(places, indices)};
             seen_.see(triangle, run.places, cells ? &shaded.cells() : nullptr);
             if (cells) {
                 find_cells(run, out);
@@ -141,9 +142,11 @@ std::span<const std::uint32_t> TileShader::by_pixel(std::span<const std::uint32_
         for (std::size_t i = begin; i < end; ++i)
             first[static_cast<std::ptrdiff_t>(ends[places[i] % kLanes]++)] = places[i];
         const auto by_index = [&](std::uint32_t a, std::uint32_t b) { return indices[a] < indices[b]; };
-        for (int lane = 0; lane < kLanes; ++lane)
-            std::sort(first + static_cast<std::ptrdiff_t>(lane == 0 ? 0 : ends[lane - 1]),
-                      first + static_cast<std::ptrdiff_t>(ends[lane]), by_index);
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const auto from = first + static_cast<std::ptrdiff_t>(lane == 0 ? 0 : ends[lane - 1]);
+            const auto to = first + static_cast<std::ptrdiff_t>(ends[lane]);
+            if (!std::is_sorted(from, to, by_index)) std::sort(from, to, by_index);
+        }
         begin = end;
     }
     return by_pixel_;
@@ -152,12 +155,14 @@ std::span<const std::uint32_t> TileShader::by_pixel(std::span<const std::uint32_
 // The samples of one pixel share a point, or none do; those that see the back are another point.
 void TileShader::shade_pixels(const Run& run, const Tile& tile, TileShade& out) {
     const bool each = scene_->options().rate == ShadingRate::kSample;
-    const auto pixel_of = [&](std::uint32_t place) { return place / per_block_ * kLanes + place % kLanes; };
     for (std::size_t begin = 0; begin < run.places.size();) {
-        const std::uint32_t pixel = pixel_of(run.places[begin]);
+        const std::uint32_t block = run.places[begin] / per_block_, lane = run.places[begin] % kLanes;
+        const auto is_here = [&](std::uint32_t place) {
+            return place - block * per_block_ < per_block_ && place % kLanes == lane;
+        };
         PointSamples points[2];
         const std::size_t last = each ? begin + 1 : run.places.size();
-        for (; begin < last && pixel_of(run.places[begin]) == pixel; ++begin) {
+        for (; begin < last && is_here(run.places[begin]); ++begin) {
             const glm::vec3 b = seen_.barycentrics(begin);
             PointSamples& point = points[seen_.key(begin).front()];
             point.sum += b;
@@ -171,7 +176,7 @@ void TileShader::shade_pixels(const Run& run, const Tile& tile, TileShade& out) 
             if (point.count == 0) continue;
             const glm::vec3 b = point.sum / static_cast<float>(point.count);
             WaitingPoint& waiting = add_point(run, b, front != 0, ShadingCell{}, out);
-            waiting.seed = seed_of(tile, pixel, static_cast<std::uint32_t>(front));
+            waiting.seed = seed_of(tile, block * kLanes + lane, static_cast<std::uint32_t>(front));
             waiting.colors = point.colors;
             for (int q = 0; q < kQuarters; ++q) point.quarter[by_quarters_ ? q : 0].write(q, waiting.shadow);
         }

@@ -12,24 +12,26 @@ void TileSamples::collect(const SampleTable& samples, const Tile& tile, const Hi
     triangles_.clear();
     std::fill(table_.begin(), table_.end(), 0u);
     const std::uint32_t per_block = static_cast<std::uint32_t>(samples.slots()) * kLanes;
+    const std::uint32_t starts = is_by_pixel(samples) ? kLanes : 1;
     std::uint32_t last = kNoTriangle, local = 0;
     for (int block = first_block; block < last_block; ++block) {
         const int bx = tile.cell_x() * kCellBlocks + block % kCellBlocks;
         const int by = tile.cell_y() * kCellBlocks + block / kCellBlocks;
         if (bx * kBlockSize < tile.x0 || bx * kBlockSize >= tile.x1) continue;
         if (by * kBlockSize < tile.y0 || by * kBlockSize >= tile.y1 || !tile.wants(bx, by)) continue;
-        const std::uint32_t begin = static_cast<std::uint32_t>(block) * per_block;
-        for (std::uint32_t place = begin; place < begin + per_block; ++place) {
-            const std::uint32_t triangle = hits.triangle[place];
-            if (triangle == kNoTriangle) {
-                misses_.push_back(place);
-                continue;
+        const std::uint32_t first = static_cast<std::uint32_t>(block) * per_block;
+        for (std::uint32_t begin = first; begin < first + starts; ++begin)
+            for (std::uint32_t place = begin; place < first + per_block; place += starts) {
+                const std::uint32_t triangle = hits.triangle[place];
+                if (triangle == kNoTriangle) {
+                    misses_.push_back(place);
+                    continue;
+                }
+                if (triangle != last) local = local_triangle(triangle);
+                last = triangle;
+                ++counts_[local];
+                entries_.push_back({place, local});
             }
-            if (triangle != last) local = local_triangle(triangle);
-            last = triangle;
-            ++counts_[local];
-            entries_.push_back({place, local});
-        }
     }
     sort();
 }

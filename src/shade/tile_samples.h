@@ -1,6 +1,7 @@
 #pragma once
-// The samples of a part of a tile, triangle by triangle, and within a triangle in the order of Hits: a counting sort,
-// which is stable. Neighbours in that order are near each other in memory and in time.
+// The samples of a part of a tile, triangle by triangle, and within a triangle in the order of Hits, where neighbours
+// are near each other in memory and in time: a counting sort, which is stable. Where nothing blurs, block by block and
+// pixel by pixel.
 
 #include <cstdint>
 #include <span>
@@ -20,13 +21,16 @@ class TileSamples {
     /// Triangles in the order in which they were met.
     std::size_t triangle_count() const { return triangles_.size(); }
     std::uint32_t triangle(std::size_t i) const { return triangles_[i]; }
-    /// Places in Hits of the i-th triangle's samples, ascending.
+    /// Whether they come pixel by pixel in index order, as where nothing blurs: slots are indices there.
+    static bool is_by_pixel(const SampleTable& samples) { return samples.grouping() == Grouping::kStill; }
+
+    /// Places in Hits of the i-th triangle's samples.
     std::span<const std::uint32_t> places(std::size_t i) const {
         const std::uint32_t begin = i == 0 ? 0 : counts_[i - 1];
         return std::span(places_).subspan(begin, counts_[i] - begin);
     }
 
-    /// Places of samples that hit nothing, ascending.
+    /// Places of samples that hit nothing, block by block.
     std::span<const std::uint32_t> misses() const { return misses_; }
 
   private:
