@@ -187,7 +187,7 @@ class Lookup {
 
     // Texels of one place for each lane.
     struct Texels {
-        IVec key, index;  // of the cell; of the sample in it
+        IVec x, y, key, index;  // of the map; of the cell; of the sample in it
     };
     HWY_INLINE Texels texels(F f, Vec x, Vec y, IVec quarter) const {
         const I d;
@@ -196,7 +196,7 @@ class Lookup {
         const IVec in_cell = hn::Set(d, kCellSize - 1);
         const IVec texel = hn::Add(hn::ShiftLeft<5>(hn::And(py, in_cell)), hn::And(px, in_cell));
         const IVec index = hn::Add(hn::ShiftLeft<2>(texel), quarter);
-        return {hn::Add(hn::ShiftLeft<16>(hn::ShiftRight<5>(py)), hn::ShiftRight<5>(px)), index};
+        return {px, py, hn::Add(hn::ShiftLeft<16>(hn::ShiftRight<5>(py)), hn::ShiftRight<5>(px)), index};
     }
 
     // Calls visit(lanes, cell) for each cell of the map that wanted lanes lie in.
@@ -213,13 +213,27 @@ class Lookup {
         }
     }
 
-    // Time of the map's samples there.
+    // Where in its texel, or when in its quarter, a sample is. Exact.
+    template <int kFirst, int kBits>
+    HWY_INLINE Vec share(F f, IVec word) const {
+        const U u;
+        const auto above = hn::ShiftLeft<32 - kFirst - kBits>(hn::BitCast(u, word));
+        const IVec bits = hn::BitCast(I(), hn::ShiftRight<32 - kBits>(above));
+        constexpr float kStep = 1.0f / (1 << kBits);
+        return plus_product(hn::Set(f, 0.5f * kStep), hn::ConvertTo(f, bits), hn::Set(f, kStep));
+    }
+    HWY_INLINE Vec time_in_quarter(F f, IVec word) const {
+        return share<2 * ShadowSamples::kPlaceBits, ShadowSamples::kTimeBits>(f, word);
+    }
+
+    // When in their quarters the map's samples there are.
     HWY_INLINE Vec times(F f, const Texels& at, Mask wanted) const {
-        Vec t = hn::Zero(f);
+        const I d;
+        IVec words = hn::Zero(d);
         for_each_cell(f, at.key, wanted, [&](Mask here, const ShadowReceiver::Cell& cell) HWY_ATTR {
-            t = hn::IfThenElse(here, hn::GatherIndex(f, cell.samples->t, at.index), t);
+            words = hn::IfThenElse(hn::RebindMask(d, here), hn::GatherIndex(d, cell.samples, at.index), words);
         });
-        return t;
+        return time_in_quarter(f, words);
     }
 
     // A map sample tells of the point only if the point is there at the sample's time: texels along the way are tried
@@ -228,11 +242,9 @@ class Lookup {
         const Vec far = hn::Set(f, 0.5f), one = hn::Set(f, 1.0f);
         Mask open = hn::And(wanted, hn::Gt(hn::Max(hn::Abs(way_x), hn::Abs(way_y)), far));
         Vec least = hn::Set(f, INFINITY), best = tau;
-        const Vec quarter = hn::ConvertTo(f, q);
         for (int attempt = 0; attempt < kAttempts && !hn::AllFalse(f, open); ++attempt) {
             const Texels at = texels(f, plus_product(x, tau, way_x), plus_product(y, tau, way_y), q);
-            const Vec then = hn::Sub(hn::Mul(times(f, at, open), hn::Set(f, kSamples)), quarter);
-            const Vec late = hn::Sub(then, tau);
+            const Vec late = hn::Sub(times(f, at, open), tau);
             const Vec miss = hn::Max(hn::Abs(hn::Mul(late, way_x)), hn::Abs(hn::Mul(late, way_y)));
             const Mask better = hn::And(open, hn::Lt(miss, least));
             least = hn::IfThenElse(better, miss, least);
@@ -289,20 +301,22 @@ class Lookup {
         }
 
         const Texels at = texels(f, x, y, q);
-        Vec occluder = hn::Set(f, INFINITY), sample_x = hn::Zero(f), sample_y = hn::Zero(f), t = hn::Zero(f);
+        Vec occluder = hn::Set(f, INFINITY);
+        IVec words = hn::Zero(d);
         for_each_cell(f, at.key, wanted, [&](Mask here, const ShadowReceiver::Cell& cell) HWY_ATTR {
             occluder = hn::IfThenElse(here, hn::GatherIndex(f, cell.depths, at.index), occluder);
-            sample_x = hn::IfThenElse(here, hn::GatherIndex(f, cell.samples->x, at.index), sample_x);
-            sample_y = hn::IfThenElse(here, hn::GatherIndex(f, cell.samples->y, at.index), sample_y);
-            if constexpr (kPath != Path::kStill)
-                t = hn::IfThenElse(here, hn::GatherIndex(f, cell.samples->t, at.index), t);
+            words = hn::IfThenElse(hn::RebindMask(d, here), hn::GatherIndex(d, cell.samples, at.index), words);
         });
         if (hn::AllTrue(f, hn::Eq(occluder, hn::Set(f, INFINITY)))) return kEvery;
-        // From the middle of the cell to that of the map.
-        const IVec column = hn::And(at.key, hn::Set(d, 0xffff)), row = hn::ShiftRight<16>(at.key);
-        const Vec size = hn::Set(f, kCellSize), to_middle = hn::Set(f, half_ - 0.5f * kCellSize);
-        sample_x = hn::Add(sample_x, hn::Sub(hn::Mul(hn::ConvertTo(f, column), size), to_middle));
-        sample_y = hn::Add(sample_y, hn::Sub(to_middle, hn::Mul(hn::ConvertTo(f, row), size)));
+        // From the middle of the map.
+        const Vec whole = hn::Set(f, half_), bottom = hn::Set(f, half_ - 1.0f);
+        const Vec sample_x =
+            hn::Add(share<0, ShadowSamples::kPlaceBits>(f, words), hn::Sub(hn::ConvertTo(f, at.x), whole));
+        const Vec sample_y = hn::Add(share<ShadowSamples::kPlaceBits, ShadowSamples::kPlaceBits>(f, words),
+                                     hn::Sub(bottom, hn::ConvertTo(f, at.y)));
+        Vec t = hn::Zero(f);
+        if constexpr (kPath != Path::kStill)
+            t = hn::Mul(hn::Add(hn::ConvertTo(f, q), time_in_quarter(f, words)), hn::Set(f, 1.0f / kSamples));
         return bits_of(f, hn::Or(hn::Not(wanted), is_lit(f, first, sample_x, sample_y, t, occluder)));
     }
 

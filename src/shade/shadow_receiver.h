@@ -28,12 +28,12 @@ class ShadowReceiver {
     /// Cell (key % 65536, key / 65536) of a level, with what casts up to a limit.
     struct Cell {
         const float* depths = nullptr;
-        const ShadowSamples::Cell* samples = nullptr;
+        const std::int32_t* samples = nullptr;  ///< ShadowSamples::words()
     };
     const Cell& cell(int exponent, int limit, std::int32_t key) {
         if (key != key_ || exponent != exponent_ || limit != limit_) {
             const int x = key & 0xffff, y = key >> 16;
-            cell_ = {map_->depths(exponent, limit, x, y), &map_->samples(x, y)};
+            cell_ = {map_->depths(exponent, limit, x, y), map_->samples(x, y)};
             key_ = key, exponent_ = exponent, limit_ = limit;
         }
         return cell_;
