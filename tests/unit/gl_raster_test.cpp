@@ -66,6 +66,18 @@ TEST_F(GlBackend, SeesTheSameInFilesOfOthers) {
     }
 }
 
+// Of powers of two and other numbers; below sixteen, pixels of a block share more digits.
+TEST_F(GlBackend, HasTheSameThresholdsOfBlendedSurfacesThatMove) {
+    const Scene scene = load_scene("builtin:dragonfly");
+    for (const int spp : {1, 2, 6, 8, 16, 32}) {
+        RenderSettings settings = settings_of(64, 48, spp);
+        settings.method.seed = 3;
+        expect_same(scene, settings, 24, "none");
+        settings.camera.fstop = 2.8;
+        expect_same(scene, settings, 24, "none");
+    }
+}
+
 // Panes behind one another of all that glass can be: whole, textured by its own coordinates and transform, with holes,
 // blended; and a wall.
 Scene glass_panes() {
