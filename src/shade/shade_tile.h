@@ -39,7 +39,6 @@ class TileShader {
         const ShadedTriangle& triangle;
         std::uint32_t number;
         std::span<const std::uint32_t> places;
-        std::span<const std::uint16_t> pixels;
     };
     /// A cell of the triangle in hand, and the side from which it is seen.
     struct SharedCell {
@@ -47,6 +46,8 @@ class TileShader {
         std::size_t first;  ///< the sample that was first to see it
         QuarterColors colors;
     };
+    std::span<const std::uint32_t> by_pixel(std::span<const std::uint32_t> places,
+                                            std::span<const std::uint16_t> indices);
     void shade_pixels(const Run& run, const Tile& tile, TileShade& out);
     void find_cells(const Run& run, TileShade& out);
     void shade_cells(const Run& run, TileShade& out);
@@ -59,12 +60,14 @@ class TileShader {
     }
 
     const ShadingScene* scene_ = nullptr;
-    bool by_quarters_ = false;  // colours change while the shutter is open
+    bool by_quarters_ = false;     // colours change while the shutter is open
+    std::uint32_t per_block_ = 0;  // samples of a block
     WaitingPoints waiting_;
     TileSamples samples_;
     SeenSamples seen_;
     std::int64_t shaded_ = 0;
     std::vector<SampleVector> room_;
+    std::vector<std::uint32_t> by_pixel_;
     std::vector<SharedCell> cells_;
     std::vector<std::uint32_t> cell_table_;  // open addressing: index into cells_ + 1, or 0
 };

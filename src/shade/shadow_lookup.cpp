@@ -69,13 +69,22 @@ HWY_INLINE Place blend(F f, const Vec b[3], const float* corners, const Place& o
     return p;
 }
 
-// The same of corners that each lane has for itself, `index` floats on.
-HWY_INLINE Place blend_each(F f, const Vec b[3], const float* corners, IVec index, const Place& offset) {
+// Entry `index` of a table, other in each lane, of `size` entries; ShadowReceiver::kReadable may be read.
+HWY_INLINE Vec entry(F f, const float* table, IVec index, int size) {
+    if constexpr (kWidth >= 8)
+        if (size <= kWidth) return hn::TableLookupLanes(hn::LoadU(f, table), hn::IndicesFromVec(f, index));
+    return hn::GatherIndex(f, table, index);
+}
+
+// The point that has these barycentrics, of corners as they are at the border `index` of quarters.
+HWY_INLINE Place blend_at(F f, const Vec b[3], const ShadowReceiver& receiver, IVec index, const Place& offset) {
     Place p = offset;
+    const auto coordinate = [&](int i)
+                                HWY_ATTR { return entry(f, receiver.at_borders(i), index, ShadowMap::kSamples + 1); };
     for (int k = 0; k < 3; ++k) {
-        p.x = plus_product(p.x, b[k], hn::GatherIndex(f, corners + 3 * k, index));
-        p.y = plus_product(p.y, b[k], hn::GatherIndex(f, corners + 3 * k + 1, index));
-        p.z = plus_product(p.z, b[k], hn::GatherIndex(f, corners + 3 * k + 2, index));
+        p.x = plus_product(p.x, b[k], coordinate(3 * k));
+        p.y = plus_product(p.y, b[k], coordinate(3 * k + 1));
+        p.z = plus_product(p.z, b[k], coordinate(3 * k + 2));
     }
     return p;
 }
@@ -141,9 +150,8 @@ class Lookup {
             begin = at(s);
             end = at(hn::Add(s, hn::Set(f, 1.0f / kSamples)));
         } else {
-            const IVec index = hn::Mul(q, hn::Set(d, 9));
-            begin = blend_each(f, b, receiver_.borders(), index, offset(f));
-            end = blend_each(f, b, receiver_.borders() + 9, index, offset(f));
+            begin = blend_at(f, b, receiver_, q, offset(f));
+            end = blend_at(f, b, receiver_, hn::Add(q, hn::Set(d, 1)), offset(f));
         }
         Vec bx = begin.x, by = begin.y, ex = end.x, ey = end.y;
         if constexpr (kPerspective) {
@@ -328,22 +336,24 @@ class Lookup {
         barycentrics(f, first, b);
         const Vec scale = hn::Set(f, scale_);
         const I d;
-        IVec index = hn::Zero(d);
+        IVec segment = hn::Zero(d);
         Vec s = t;
         if constexpr (kPath == Path::kInPieces) {
             const Vec along = hn::Mul(t, hn::Set(f, static_cast<float>(receiver_.segments())));
-            const IVec segment = hn::Min(hn::ConvertTo(d, along), hn::Set(d, receiver_.segments() - 1));
+            segment = hn::Min(hn::ConvertTo(d, along), hn::Set(d, receiver_.segments() - 1));
             s = hn::Sub(along, hn::ConvertTo(f, segment));
-            index = hn::Mul(segment, hn::Set(d, 9));
         }
         for (int k = 0; k < 3; ++k) {
             Vec v[3];
             for (int axis = 0; axis < 3; ++axis) {
-                const float* knot = receiver_.knots() + 3 * k + axis;
                 if constexpr (kPath == Path::kInPieces) {
-                    const Vec now = hn::GatherIndex(f, knot, index), next = hn::GatherIndex(f, knot + 9, index);
+                    const float* table = receiver_.at_knots(3 * k + axis);
+                    const int size = receiver_.segments() + 1;
+                    const Vec now = entry(f, table, segment, size),
+                              next = entry(f, table, hn::Add(segment, hn::Set(d, 1)), size);
                     v[axis] = plus_product(now, s, hn::Sub(next, now));
                 } else {
+                    const float* knot = receiver_.knots() + 3 * k + axis;
                     v[axis] = hn::Set(f, knot[0]);
                     if constexpr (kPath == Path::kStraight)
                         v[axis] = plus_product(v[axis], s, hn::Set(f, knot[9] - knot[0]));
