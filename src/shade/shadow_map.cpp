@@ -113,7 +113,7 @@ const ShadowMap::List& ShadowMap::list(int exponent, int limit, int cx, int cy) 
     const float size = std::ldexp(static_cast<float>(kCellSize), exponent);
     const float x0 = static_cast<float>(cx - middle) * size, y1 = static_cast<float>(middle - cy) * size;
     auto made = std::make_unique<List>();
-    const std::vector<Casters::Box>& boxes = casters().boxes;
+    const std::span<const Casters::Box> boxes = casters().boxes;
     const auto take = [&](std::uint32_t i) {
         const Casters::Box& box = boxes[i];
         if (box.x0 <= x0 + size && box.x1 >= x0 && box.y0 <= y1 && box.y1 >= y1 - size) made->push_back(i);
