@@ -57,15 +57,14 @@ std::uint32_t seed_of(const Tile& tile, int pixel, std::uint32_t salt) {
     return mix(mix(static_cast<std::uint32_t>(x) + 0x9e3779b9u * salt) + static_cast<std::uint32_t>(y));
 }
 
-// Nothing is seen yet by the samples of the blocks that are wanted.
-void clear(const Tile& tile, int slots, std::vector<std::uint32_t>& points) {
-    const std::size_t per_block = static_cast<std::size_t>(slots) * kLanes, all = kBlocksPerCell * per_block;
-    if (points.size() < all) return points.assign(all, kBackground);
-    for (std::size_t block = 0; block < kBlocksPerCell; ++block)
-        if (tile.blocks >> block & 1u) std::fill_n(points.begin() + block * per_block, per_block, kBackground);
-}
-
 }  // namespace
+
+void TileShader::find_entries(int slots, const Tile& tile, const Hits& hits) {
+    const std::uint64_t wanted = tile.wanted_blocks();
+    for (int block = 0; block < kBlocksPerCell; ++block)
+        if ((wanted >> block & 1u) != 0)
+            skipped_[block] = static_cast<std::uint32_t>(block * slots * kLanes) - hits.first(block);
+}
 
 std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& samples, const Tile& tile,
                                const Hits& hits, TileShade& out, bool roughly) {
@@ -73,8 +72,9 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
     by_quarters_ = scene.shadows().move();
     shaded_ = 0;
     waiting_.start(scene);
-    clear(tile, samples.slots(), out.point_of_sample);
+    out.point_of_sample.assign(hits.triangle.size(), kBackground);
     out.colors.clear();
+    find_entries(samples.slots(), tile, hits);
     const SampleVector* vectors = samples.cell(tile.cell_x(), tile.cell_y(), room_).data();
     seen_.start(scene.frame(), cell_centre(scene.frame().view, tile.cell_x(), tile.cell_y()), vectors,
                 roughly ? kRoughLevel : 0);
@@ -107,6 +107,7 @@ void TileShader::shade_misses(const ShadingScene& scene, const SampleTable& samp
                               TileShade& out) {
     if (!scene.has_background()) return;
     scene_ = &scene;
+    find_entries(samples.slots(), tile, hits);
     const SampleVector* vectors = samples.cell(tile.cell_x(), tile.cell_y(), room_).data();
     const int blocks_per_chunk = std::max(1, kSamplesPerChunk / (kLanes * samples.slots()));
     for (int block = 0; block < kBlocksPerCell; block += blocks_per_chunk) {
@@ -137,7 +138,7 @@ void TileShader::shade_pixels(const Run& run, const Tile& tile, TileShade& out) 
             ++point.count;
             const int quarter = quarter_of(begin);
             point.quarter[quarter].add(b);
-            out.point_of_sample[run.places[begin]] = point.colors.at(quarter, out);
+            point_of(run.places[begin], pixel, out) = point.colors.at(quarter, out);
         }
         for (int front = 0; front < 2; ++front) {
             const PointSamples& point = points[front];
@@ -166,7 +167,7 @@ void TileShader::find_cells(const Run& run, TileShade& out) {
             cells_.push_back({key, i, {}});
             cell_table_[at] = static_cast<std::uint32_t>(cells_.size());
         }
-        out.point_of_sample[run.places[i]] = cells_[cell_table_[at] - 1].colors.at(quarter_of(i), out);
+        point_of(run.places[i], run.pixels[i], out) = cells_[cell_table_[at] - 1].colors.at(quarter_of(i), out);
     }
 }
 
@@ -199,7 +200,7 @@ void TileShader::shade_background(const SampleVector* samples, const Tile& tile,
             const SampleVector& s = samples[place / kLanes];
             sum += scene_->background(centre.x + s.x[lane], centre.y + s.y[lane], s.u[lane], s.v[lane], s.t[lane]);
             count += 1.0f;
-            out.point_of_sample[place] = static_cast<std::uint32_t>(out.colors.size());
+            point_of(place, pixel, out) = static_cast<std::uint32_t>(out.colors.size());
         }
         out.colors.push_back(contained(sum / count));
         out.colors.back().w = 0.0f;

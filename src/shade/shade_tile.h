@@ -4,6 +4,7 @@
 // 2010; here the mean instead of their last hit), or for each sample. Nothing hidden is ever shaded.
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -47,19 +48,25 @@ class TileShader {
         std::size_t first;  ///< the sample that was first to see it
         QuarterColors colors;
     };
+    void find_entries(int slots, const Tile& tile, const Hits& hits);
     void shade_pixels(const Run& run, const Tile& tile, TileShade& out);
     void find_cells(const Run& run, TileShade& out);
     void shade_cells(const Run& run, TileShade& out);
     WaitingPoint& add_point(const Run& run, const glm::vec3& barycentrics, bool front, const ShadingCell& cell,
                             TileShade& out);
     void shade_background(const SampleVector* samples, const Tile& tile, TileShade& out);
+    /// Of the point that a sample shows, by its place in SampleTable::cell() and its pixel (TileSamples).
+    std::uint32_t& point_of(std::uint32_t place, std::uint16_t pixel, TileShade& out) const {
+        return out.point_of_sample[place - skipped_[pixel / kLanes]];
+    }
     int quarter_of(std::size_t sample) const {
         const int quarter = static_cast<int>(seen_.time(sample) * QuarterColors::kQuarters);
         return by_quarters_ ? std::min(quarter, QuarterColors::kQuarters - 1) : 0;
     }
 
     const ShadingScene* scene_ = nullptr;
-    bool by_quarters_ = false;  // colours change while the shutter is open
+    bool by_quarters_ = false;                             // colours change while the shutter is open
+    std::array<std::uint32_t, kBlocksPerCell> skipped_{};  // samples of the cell before each block's that have no hits
     WaitingPoints waiting_;
     TileSamples samples_;
     SeenSamples seen_;

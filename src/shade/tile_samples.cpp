@@ -18,12 +18,13 @@ void TileSamples::collect(const SampleTable& samples, const Tile& tile, const Hi
         if (bx * kBlockSize < tile.x0 || bx * kBlockSize >= tile.x1) continue;
         if (by * kBlockSize < tile.y0 || by * kBlockSize >= tile.y1 || !tile.wants(bx, by)) continue;
         order_.read(samples, bx, by);
+        const std::size_t first = hits.first(block);
         for (int lane = 0; lane < kLanes; ++lane) {
             const std::uint16_t* slot = order_.slots(lane);
             const auto pixel = static_cast<std::uint16_t>(block * kLanes + lane);
             for (int index = 0; index < slots; ++index) {
                 const auto place = static_cast<std::uint32_t>((block * slots + slot[index]) * kLanes + lane);
-                const std::uint32_t triangle = hits.triangle[place];
+                const std::uint32_t triangle = hits.triangle[first + slot[index] * kLanes + lane];
                 if (triangle == kNoTriangle) {
                     misses_.push_back({place, pixel});
                     continue;

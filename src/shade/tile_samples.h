@@ -21,7 +21,8 @@ class TileSamples {
     /// Triangles in the order in which they were met.
     std::size_t triangle_count() const { return triangles_.size(); }
     std::uint32_t triangle(std::size_t i) const { return triangles_[i]; }
-    /// Of the i-th triangle's samples: places in Hits, and pixels, which are 16 * (block of the cell) + lane.
+    /// Of the i-th triangle's samples: places in SampleTable::cell() (vector * kLanes + lane), and
+    /// pixels, which are 16 * (block of the cell) + lane.
     std::span<const std::uint32_t> places(std::size_t i) const { return run(places_, i); }
     std::span<const std::uint16_t> pixels(std::size_t i) const { return run(pixels_, i); }
 

@@ -48,10 +48,10 @@ Scene crossing_panes() {
 }
 
 // Mean of a pixel's samples.
-glm::dvec4 pixel_of(const SampleTable& samples, const TileShade& shade, int x, int y) {
+glm::dvec4 pixel_of(const SampleTable& samples, const Hits& hits, const TileShade& shade, int x, int y) {
     glm::dvec4 sum(0.0);
     for (int i = 0; i < kSpp; ++i) {
-        const std::uint32_t point = shade.point_of_sample[hit_index(x, y, samples.slot_of(x, y, i), samples.slots())];
+        const std::uint32_t point = shade.point_of_sample[hits.entry(x, y, samples.slot_of(x, y, i))];
         if (point != kBackground) sum += glm::dvec4(shade.colors[point]);
     }
     return sum / double{kSpp};
@@ -95,7 +95,8 @@ TEST(ABuffer, IsTheMeanOfStochasticTransparency) {
         glm::dvec4 last[2] = {glm::dvec4(0.0), glm::dvec4(0.0)};
         for (int y = tile.y0; y < tile.y1; ++y)
             for (int x = tile.x0; x < tile.x1; ++x) {
-                const glm::dvec4 pixel[2] = {pixel_of(samples, stochastic, x, y), pixel_of(samples, blended, x, y)};
+                const glm::dvec4 pixel[2] = {pixel_of(samples, hits, stochastic, x, y),
+                                             pixel_of(samples, hits, blended, x, y)};
                 for (int c = 0; c < 4; ++c) {
                     of_tile[c].add(pixel[0][c] - pixel[1][c]);
                     of_picture[c].add(pixel[0][c] - pixel[1][c]);

@@ -91,8 +91,8 @@ TEST(ShadowRaster, ACellHoldsWhatTheExactTestSeesOnEveryCpuTarget) {
                 small_scene::find_hits(exact, table, tile, hits);
                 for (int i = 0; i < ShadowSamples::kPerCell; ++i) {
                     const int texel = i / ShadowSamples::kSamples;
-                    const float expected = hits.depth[small_scene::hit_index(
-                        texel % kCellSize, texel / kCellSize, i % ShadowSamples::kSamples, ShadowSamples::kSamples)];
+                    const float expected = hits.depth[hits.entry(
+                        tile.x0 + texel % kCellSize, tile.y0 + texel / kCellSize, i % ShadowSamples::kSamples)];
                     hits_seen += std::isfinite(expected);
                     wrong += !(bounds[i] >= depths[i]) || std::isfinite(bounds[i]) != std::isfinite(depths[i]);
                     differ += !(depths[i] == expected || std::abs(depths[i] - expected) < 1e-4f * expected);
