@@ -1,5 +1,5 @@
 // Alpha masks and stochastic transparency of a vector of hits: the arithmetic of is_opaque_at() (frame/opacity.h), lane
-// by lane the same roundings in the same order. Texels alone are fetched one lane at a time: a gather costs more.
+// by lane the same roundings in the same order.
 
 #if defined(PENTAPRISM_COVER_VECTOR_OPACITY_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef PENTAPRISM_COVER_VECTOR_OPACITY_INL_H
@@ -9,6 +9,7 @@
 #endif
 
 #include <bit>
+#include <cstring>
 
 #include "cover/lanes-inl.h"
 #include "frame/opacity.h"
@@ -47,7 +48,18 @@ HWY_INLINE IntVec wrapped(I i, Wrap wrap, IntVec texel, int size) {
     return hn::IfThenElse(hn::Gt(texel, last), hn::Sub(hn::Set(i, 2 * size - 1), texel), texel);
 }
 
-HWY_INLINE Vec texture_alpha(F f, const OpacityTerms& terms, Vec s, Vec t, std::uint64_t lanes) {
+// The four codes that begin at each texel, which needs Pyramid::kBeyondCodes.
+HWY_INLINE IntVec codes_at(I i, const std::uint8_t* codes, IntVec texel) {
+#if HWY_TARGET == HWY_SCALAR  // where nothing may be read across words
+    std::int32_t word;
+    std::memcpy(&word, codes + hn::GetLane(texel), sizeof word);
+    return hn::Set(i, word);
+#else
+    return hn::GatherOffset(i, reinterpret_cast<const std::int32_t*>(codes), texel);
+#endif
+}
+
+HWY_INLINE Vec texture_alpha(F f, const OpacityTerms& terms, Vec s, Vec t, Mask hit) {
     const I i;
     const TextureRef& ref = *terms.ref;
     const int width = terms.texture->width(), height = terms.texture->height();
@@ -62,29 +74,25 @@ HWY_INLINE Vec texture_alpha(F f, const OpacityTerms& terms, Vec s, Vec t, std::
     const IntVec column0 = hn::ConvertTo(i, x_floor), row0 = hn::ConvertTo(i, y_floor);
     const IntVec left = wrapped(i, ref.wrap_s, column0, width);
     const IntVec upper = hn::Mul(wrapped(i, ref.wrap_t, row0, height), row);
-    HWY_ALIGN std::int32_t at[4][kLanes];
-    HWY_ALIGN float code[4][kLanes] = {};
-    hn::Store(hn::Add(upper, left), i, at[0]);
-    if (ref.nearest) {
-        for (std::uint64_t m = lanes; m != 0; m &= m - 1) {
-            const int k = std::countr_zero(m);
-            code[0][k] = codes[static_cast<std::uint32_t>(at[0][k])];
-        }
-        return hn::Mul(hn::Load(f, code[0]), hn::Set(f, 1.0f / 255.0f));
-    }
+    const auto inside = hn::RebindMask(i, hit);
+    // What begins at a texel: its code and those to its right. Other lanes may lie anywhere.
+    const auto codes_from = [&](IntVec texel)
+                                HWY_ATTR { return codes_at(i, codes, hn::IfThenElseZero(inside, texel)); };
+    const auto code = [&](IntVec word) HWY_ATTR { return hn::ConvertTo(f, hn::And(word, hn::Set(i, 0xff))); };
+    const IntVec upper_left = codes_from(hn::Add(upper, left));
+    if (ref.nearest) return hn::Mul(code(upper_left), hn::Set(f, 1.0f / 255.0f));
     const IntVec right = wrapped(i, ref.wrap_s, hn::Add(column0, one), width);
     const IntVec lower = hn::Mul(wrapped(i, ref.wrap_t, hn::Add(row0, one), height), row);
-    hn::Store(hn::Add(upper, right), i, at[1]);
-    hn::Store(hn::Add(lower, left), i, at[2]);
-    hn::Store(hn::Add(lower, right), i, at[3]);
-    for (std::uint64_t m = lanes; m != 0; m &= m - 1) {
-        const int k = std::countr_zero(m);
-        for (int tap = 0; tap < 4; ++tap) code[tap][k] = codes[static_cast<std::uint32_t>(at[tap][k])];
+    const IntVec lower_left = codes_from(hn::Add(lower, left));
+    IntVec upper_right = hn::ShiftRight<8>(upper_left), lower_right = hn::ShiftRight<8>(lower_left);
+    if (!hn::AllFalse(i, hn::And(inside, hn::Ne(right, hn::Add(left, one))))) {
+        upper_right = codes_from(hn::Add(upper, right));
+        lower_right = codes_from(hn::Add(lower, right));
     }
     const Vec share_x = hn::Sub(x, x_floor), share_y = hn::Sub(y, y_floor);
     const auto between = [&](Vec p, Vec q, Vec share) HWY_ATTR { return hn::Add(p, hn::Mul(hn::Sub(q, p), share)); };
-    const Vec above = between(hn::Load(f, code[0]), hn::Load(f, code[1]), share_x);
-    const Vec below = between(hn::Load(f, code[2]), hn::Load(f, code[3]), share_x);
+    const Vec above = between(code(upper_left), code(upper_right), share_x);
+    const Vec below = between(code(lower_left), code(lower_right), share_x);
     return hn::Mul(between(above, below, share_y), hn::Set(f, 1.0f / 255.0f));
 }
 
@@ -208,7 +216,7 @@ HWY_NOINLINE Mask decide_opacity(F f, const TileWork& work, std::uint32_t triang
             s = hn::Add(s_turned, offset_s);
             t = hn::Add(t_turned, offset_t);
         }
-        alpha = hn::Mul(alpha, texture_alpha(f, terms, s, t, bits_of(f, hit)));
+        alpha = hn::Mul(alpha, texture_alpha(f, terms, s, t, hit));
     }
     if (terms.mode == AlphaMode::kMask) return hn::And(hit, hn::Ge(alpha, hn::Set(f, terms.cutoff)));
     return exceeds_threshold(f, work, triangle, alpha, hit, sample_of);

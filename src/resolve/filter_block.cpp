@@ -8,7 +8,6 @@
 #include <hwy/foreach_target.h>
 // foreach_target.h must come first.
 #include <algorithm>
-#include <cmath>
 #include <hwy/highway.h>
 #include <limits>
 
@@ -33,34 +32,54 @@ struct Run {
     alignas(64) float value[kFloatRun][4][kLanes], across[kFloatRun][3][kLanes], down[kFloatRun][3][kLanes];
 };
 
-HWY_INLINE void gather(F f, const Float4* table, hn::Vec<I> entry, int count, float (*out)[kLanes], int lane) {
-    const I d;
-    const hn::Vec<I> at = hn::ShiftLeft<2>(entry);
-    for (int k = 0; k < count; ++k)
-        hn::Store(hn::GatherIndex(f, reinterpret_cast<const float*>(table) + k, hn::BitCast(d, at)), f, out[k] + lane);
-}
+// Entries of a table, copied lane by lane, which takes a third of the time of gathers, one for each component.
+struct Entries {
+    alignas(64) std::uint32_t number[kFloatRun][kLanes];
+    alignas(64) Float4 entry[kFloatRun][kLanes];
+
+    HWY_INLINE void copy_from(const Float4* table, int count) {
+        for (int i = 0; i < count; ++i)
+            for (int lane = 0; lane < kLanes; ++lane) entry[i][lane] = table[number[i][lane]];
+    }
+    template <std::size_t kComponents>
+    HWY_INLINE void write(int i, int lane, float (&out)[kComponents][kLanes]) const {
+        const F f;
+        Vec component[4];
+        hn::LoadInterleaved4(f, reinterpret_cast<const float*>(&entry[i][lane]), component[0], component[1],
+                             component[2], component[3]);
+        for (std::size_t k = 0; k < kComponents; ++k) hn::Store(component[k], f, out[k] + lane);
+    }
+};
 
 void read(const BlockSamples& samples, int first, int count, Run& run, BlockSums& out) {
     const F f;
     const I d;
     const U u;
     const auto offset = [&](Vec x) HWY_ATTR {  // place_in_pixel()
-        return hn::And(hn::ConvertTo(d, hn::Mul(x, hn::Set(f, 256.0f))), hn::Set(d, 255));
+        return hn::BitCast(u, hn::And(hn::ConvertTo(d, hn::Mul(x, hn::Set(f, 256.0f))), hn::Set(d, 255)));
     };
+    Entries shown, across, down;
     for (int i = 0; i < count; ++i)
         for (int lane = 0; lane < kLanes; lane += kWidth) {
             const int slot = first + i;
             const auto point = hn::LoadU(u, samples.points + slot * kLanes + lane);
             // Lanes outside the tile hold anything.
-            const auto entry = hn::BitCast(d, hn::Min(point, hn::Set(u, samples.background)));
-            gather(f, samples.shown, entry, 4, run.value[i], lane);
-            gather(f, samples.weights, offset(hn::Load(f, samples.vectors[slot].x + lane)), 3, run.across[i], lane);
-            gather(f, samples.weights, offset(hn::Neg(hn::Load(f, samples.vectors[slot].y + lane))), 3, run.down[i],
-                   lane);
+            hn::Store(hn::Min(point, hn::Set(u, samples.background)), u, shown.number[i] + lane);
+            hn::Store(offset(hn::Load(f, samples.vectors[slot].x + lane)), u, across.number[i] + lane);
+            hn::Store(offset(hn::Neg(hn::Load(f, samples.vectors[slot].y + lane))), u, down.number[i] + lane);
             const Vec depth = hn::LoadU(f, samples.depths + slot * kLanes + lane);
             const auto hit = hn::RebindMask(f, hn::Ne(point, hn::Set(u, kBackground)));
             const Vec closest = hn::Load(f, out.depth + lane);
             hn::Store(hn::IfThenElse(hn::And(hit, hn::Lt(depth, closest)), depth, closest), f, out.depth + lane);
+        }
+    shown.copy_from(samples.shown, count);
+    across.copy_from(samples.weights, count);
+    down.copy_from(samples.weights, count);
+    for (int i = 0; i < count; ++i)
+        for (int lane = 0; lane < kLanes; lane += kWidth) {
+            shown.write(i, lane, run.value[i]);
+            across.write(i, lane, run.across[i]);
+            down.write(i, lane, run.down[i]);
         }
 }
 
@@ -103,14 +122,15 @@ void filter_samples(const BlockSamples& samples, BlockSums& out) {
     }
     const hn::CappedTag<double, 8> d;
     const auto share = hn::Set(d, samples.share), most = hn::Set(d, kMost), unit = hn::Set(d, kUnit);
-    double* from = &total[0][0][0][0];
+    const double* from = &total[0][0][0][0];
     std::int64_t* to = &out.fixed[0][0][0][0];
     constexpr int kCount = 9 * kSums * kLanes;
+    const hn::RebindToSigned<decltype(d)> d64;
     for (int i = 0; i < kCount; i += static_cast<int>(hn::Lanes(d))) {
         const auto sum = hn::Mul(hn::Load(d, from + i), share);
-        hn::Store(hn::Mul(hn::Min(hn::Max(sum, hn::Neg(most)), most), unit), d, from + i);
+        const auto fixed = hn::Mul(hn::Min(hn::Max(sum, hn::Neg(most)), most), unit);
+        hn::Store(hn::ConvertTo(d64, hn::Round(fixed)), d64, to + i);
     }
-    for (int i = 0; i < kCount; ++i) to[i] = std::llrint(from[i]);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -136,7 +136,7 @@ Pyramid::Pyramid(const Image& image, Encoding encoding, bool weight_by_alpha)
     bool opaque = true;
     for (std::size_t i = 0; i < texels && opaque; ++i) opaque = image.texels[4 * i + 3] == 255;
     if (opaque) return;
-    opacity_.resize(texels);
+    opacity_.resize(texels + kBeyondCodes);
     for (std::size_t i = 0; i < texels; ++i) opacity_[i] = image.texels[4 * i + 3];
 }
 

@@ -45,6 +45,8 @@ class Pyramid {
     }
 
     /// All of them, row by row; null if every texel of level 0 has the same opacity, that of opacity_code(0, 0).
+    /// kBeyondCodes more may be read behind the last.
+    static constexpr std::size_t kBeyondCodes = 3;
     const std::uint8_t* opacity_codes() const { return opacity_.empty() ? nullptr : opacity_.data(); }
 
     /// The texels of a level as they are stored: RGBA codes, row by row; and its size.

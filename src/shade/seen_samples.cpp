@@ -26,7 +26,6 @@ using IVec = hn::Vec<I>;
 using UVec = hn::Vec<U>;
 using Mask = hn::Mask<F>;
 constexpr int kWidth = static_cast<int>(hn::MaxLanes(F()));
-constexpr int kFloatsPerVector = sizeof(SampleVector) / sizeof(float);
 
 HWY_INLINE Vec plus_product(Vec sum, Vec a, Vec b) {
     return hn::Add(sum, hn::Mul(a, b));
@@ -41,14 +40,12 @@ void project(const SeenSamples::Batch& batch) {
     const F f;
     const I d;
     const LocalTriangle& T = *batch.triangle;
-    const Vec zero = hn::Zero(f), segments = hn::Set(f, T.segments), last = hn::Set(f, T.segments - 1.0f);
+    const Vec zero = hn::Zero(f), one = hn::Set(f, 1.0f), segments = hn::Set(f, T.segments),
+              last = hn::Set(f, T.segments - 1.0f);
     for (int first = 0; first < kLanes; first += kWidth) {
-        const IVec index = hn::BitCast(d, hn::LoadU(U(), batch.indices + first));
-        const IVec at = hn::Add(hn::Mul(hn::ShiftRight<4>(index), hn::Set(d, kFloatsPerVector)),
-                                hn::And(index, hn::Set(d, kLanes - 1)));
-        const Vec hx = hn::GatherIndex(f, batch.samples->x, at), hy = hn::GatherIndex(f, batch.samples->y, at);
-        const Vec u = hn::GatherIndex(f, batch.samples->u, at), v = hn::GatherIndex(f, batch.samples->v, at);
-        const Vec t = hn::GatherIndex(f, batch.samples->t, at);
+        const Vec hx = hn::Load(f, batch.x + first), hy = hn::Load(f, batch.y + first);
+        const Vec u = hn::Load(f, batch.u + first), v = hn::Load(f, batch.v + first);
+        const Vec t = hn::Load(f, batch.t + first);
         const Vec along = hn::Mul(t, segments);
         const Vec segment = hn::Min(hn::ConvertTo(f, hn::ConvertTo(d, along)), last);
         const Mask here = hn::Eq(segment, hn::Set(f, T.segment));
@@ -65,14 +62,14 @@ void project(const SeenSamples::Batch& batch) {
                           product_difference(x[0], y[1], x[1], y[0])};
         const Vec sum = hn::Add(hn::Add(e[0], e[1]), e[2]);
         // Rounding, and slivers' samples, may lie just outside.
+        const Vec over_sum = hn::Div(one, sum);
         Vec inside[3];
-        for (int k = 0; k < 3; ++k) inside[k] = hn::Max(hn::Div(e[k], sum), zero);
-        const Vec total = hn::Add(hn::Add(inside[0], inside[1]), inside[2]);
+        for (int k = 0; k < 3; ++k) inside[k] = hn::Max(hn::Mul(e[k], over_sum), zero);
+        const Vec total = hn::Add(hn::Add(inside[0], inside[1]), inside[2]), over_total = hn::Div(one, total);
         const Mask usable = hn::And(hn::IsFinite(total), hn::Gt(total, zero));
         for (int k = 0; k < 3; ++k)
-            hn::BlendedStore(hn::IfThenElse(usable, hn::Div(inside[k], total), hn::Set(f, 1.0f / 3.0f)), here, f,
+            hn::BlendedStore(hn::IfThenElse(usable, hn::Mul(inside[k], over_total), hn::Set(f, 1.0f / 3.0f)), here, f,
                              batch.b[k] + first);
-        hn::BlendedStore(t, here, f, batch.t + first);
         const U unsigned_lanes;
         const UVec side = hn::IfThenElseZero(hn::RebindMask(unsigned_lanes, hn::Gt(sum, zero)),
                                              hn::Set(unsigned_lanes, CellKey::kFront));
@@ -123,13 +120,14 @@ void find_cells(const SeenSamples::Batch& batch) {
             return plus_product(plus_product(hn::Mul(b[0], hn::Set(f, corner[0])), b[1], hn::Set(f, corner[1])), b[2],
                                 hn::Set(f, corner[2]));
         };
-        const Vec w = blend(T.w), x = hn::Div(blend(T.x), w), y = hn::Div(blend(T.y), w);
+        const Vec w = blend(T.w), over_w = hn::Div(hn::Set(f, 1.0f), w);
+        const Vec x = hn::Mul(blend(T.x), over_w), y = hn::Mul(blend(T.y), over_w);
         const Mask usable =
             hn::And(hn::Ge(w, hn::Set(f, T.w_near)), hn::Lt(hn::Max(hn::Abs(x), hn::Abs(y)), hn::Set(f, 16384.0f)));
         const Vec motion_w = blend(T.motion_w);
-        const Vec vx = hn::Div(hn::Sub(blend(T.motion_x), hn::Mul(motion_w, x)), w);
-        const Vec vy = hn::Div(hn::Sub(blend(T.motion_y), hn::Mul(motion_w, y)), w);
-        const Vec coc = hn::Div(blend(T.coc), w), lens2 = hn::Mul(hn::Set(f, 3.0f), hn::Mul(coc, coc));
+        const Vec vx = hn::Mul(hn::Sub(blend(T.motion_x), hn::Mul(motion_w, x)), over_w);
+        const Vec vy = hn::Mul(hn::Sub(blend(T.motion_y), hn::Mul(motion_w, y)), over_w);
+        const Vec coc = hn::Mul(blend(T.coc), over_w), lens2 = hn::Mul(hn::Set(f, 3.0f), hn::Mul(coc, coc));
         const IVec shorter = level(f, lens2, batch.least_level);
         const IVec longer = level(f, plus_product(plus_product(lens2, vx, vx), vy, vy), batch.least_level);
 
@@ -228,6 +226,21 @@ const LocalTriangle& SeenSamples::local(int segment) {
     return locals_[segment];
 }
 
+// Copied one by one: gathers of five arrays take twice as long.
+void SeenSamples::take(std::span<const std::uint32_t> indices) {
+    indices_.assign(indices.begin(), indices.end());
+    indices_.resize((indices.size() + kLanes - 1) / kLanes * kLanes, indices.back());
+    for (AlignedVector<float>* coordinate : {&x_, &y_, &u_, &v_, &t_}) coordinate->resize(indices_.size());
+    float *x = x_.data(), *y = y_.data(), *u = u_.data(), *v = v_.data(), *t = t_.data();
+    const SampleVector* samples = samples_;
+    for (const std::uint32_t index : indices_) {
+        const SampleVector& from = samples[index / kLanes];
+        const std::uint32_t lane = index % kLanes;
+        *x++ = from.x[lane], *y++ = from.y[lane];
+        *u++ = from.u[lane], *v++ = from.v[lane], *t++ = from.t[lane];
+    }
+}
+
 void SeenSamples::see(std::uint32_t triangle, std::span<const std::uint32_t> indices, const CellTriangle* cells) {
     triangle_ = triangle;
     const Part& part = frame_->parts[frame_->part_of[triangle]];
@@ -235,24 +248,20 @@ void SeenSamples::see(std::uint32_t triangle, std::span<const std::uint32_t> ind
     ready_.assign(segments, 0);
     if (static_cast<int>(locals_.size()) < segments) locals_.resize(segments);
 
-    const std::size_t count = indices.size(), padded = (count + kLanes - 1) / kLanes * kLanes;
-    indices_.assign(indices.begin(), indices.end());
-    indices_.resize(padded, indices.back());
+    take(indices);
+    const std::size_t padded = indices_.size();
     for (auto& b : b_) b.resize(padded);
-    t_.resize(padded);
     kind_.resize(padded);
     place_.resize(padded);
     for (std::size_t first = 0; first < padded; first += kLanes) {
-        Batch batch{&indices_[first], samples_,
-                    nullptr,          cells,
-                    least_level_,     {&b_[0][first], &b_[1][first], &b_[2][first]},
-                    &t_[first],       &kind_[first],
-                    &place_[first]};
+        Batch batch{
+            &x_[first],       &y_[first],    &u_[first], &v_[first],   &t_[first],
+            &indices_[first], nullptr,       cells,      least_level_, {&b_[0][first], &b_[1][first], &b_[2][first]},
+            &kind_[first],    &place_[first]};
         std::uint64_t done = 0;  // segments: at most 64 (camera/settings.cpp)
         for (int lane = 0; lane < (segments == 1 ? 1 : kLanes); ++lane) {
-            const std::uint32_t index = indices_[first + lane];
-            const float t = samples_[index / kLanes].t[index % kLanes];
-            const int segment = std::min(static_cast<int>(t * static_cast<float>(segments)), segments - 1);
+            const int segment =
+                std::min(static_cast<int>(t_[first + lane] * static_cast<float>(segments)), segments - 1);
             if ((done >> segment & 1) != 0) continue;
             done |= std::uint64_t{1} << segment;
             batch.triangle = &local(segment);

@@ -13,8 +13,9 @@ vec3 seen_barycentrics(LocalTriangle T, LocalSample s, out bool front) {
     precise vec3 e = x.yzx * y.zxy - x.zxy * y.yzx;
     precise float sum = (e.x + e.y) + e.z;
     front = sum > 0.0;
-    precise vec3 kept = max(e / sum, vec3(0.0));
-    precise float total = (kept.x + kept.y) + kept.z;
+    precise float over_sum = 1.0 / sum;
+    precise vec3 kept = max(e * over_sum, vec3(0.0));
+    precise float total = (kept.x + kept.y) + kept.z, over_total = 1.0 / total;
     bool usable = !isinf(total) && !isnan(total) && total > 0.0;
-    return usable ? kept / total : vec3(1.0 / 3.0);
+    return usable ? kept * over_total : vec3(1.0 / 3.0);
 }

@@ -67,19 +67,20 @@ class SeenSamples {
     CellKey key(std::size_t i) const { return {kind_[i], place_[i]}; }
     float time(std::size_t i) const { return t_[i]; }
 
-    // Sixteen of them, for the vector code; outputs are aligned.
+    // Sixteen of them, for the vector code; all arrays are aligned.
     struct Batch {
+        const float *x, *y, *u, *v, *t;
         const std::uint32_t* indices;
-        const SampleVector* samples;
         const LocalTriangle* triangle;
         const CellTriangle* cells;
         int least_level;
-        float *b[3], *t;
+        float* b[3];
         std::uint32_t *kind, *place;
     };
 
   private:
     const LocalTriangle& local(int segment);
+    void take(std::span<const std::uint32_t> indices);
 
     void (*see_batch_)(const Batch&, bool) = nullptr;  // of the CPU target
 
@@ -90,7 +91,8 @@ class SeenSamples {
     std::uint32_t triangle_ = 0;
     std::vector<LocalTriangle> locals_;  // of each segment
     std::vector<std::uint8_t> ready_;
-    AlignedVector<float> b_[3], t_;
+    AlignedVector<float> x_, y_, u_, v_, t_;  // the samples, in whole vectors
+    AlignedVector<float> b_[3];
     AlignedVector<std::uint32_t> kind_, place_, indices_;
 };
 

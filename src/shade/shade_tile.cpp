@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "bound/local_triangle.h"
 #include "sample/net.h"
@@ -22,9 +23,9 @@ void write_lane(const glm::vec3& barycentrics, int lane, ShadowPoint& out) {
 // Barycentrics of a few samples, evenly chosen from any number of them.
 class FewPoints {
   public:
-    // Every `stride`-th is kept; when there are too many, every other one is dropped.
+    // Every stride-th is kept, a power of two; when there are too many, every other one is dropped.
     void add(const glm::vec3& b) {
-        if (seen_++ % stride_ != 0) return;
+        if ((seen_++ & (stride_ - 1)) != 0) return;
         if (count_ == kLookups) {
             for (int i = 1; i < kLookups / 2; ++i) points_[i] = points_[2 * i];
             count_ = kLookups / 2;
@@ -50,8 +51,8 @@ struct PointSamples {
 };
 
 // Of a pixel in the picture, for what has to be random in it.
-std::uint32_t seed_of(const Tile& tile, int pixel, std::uint32_t salt) {
-    const int block = pixel / kLanes, lane = pixel % kLanes;
+std::uint32_t seed_of(const Tile& tile, std::uint32_t pixel, std::uint32_t salt) {
+    const int block = static_cast<int>(pixel) / kLanes, lane = static_cast<int>(pixel) % kLanes;
     const int x = tile.cell_x() * kCellSize + block % kCellBlocks * kBlockSize + lane % kBlockSize;
     const int y = tile.cell_y() * kCellSize + block / kCellBlocks * kBlockSize + lane / kBlockSize;
     return mix(mix(static_cast<std::uint32_t>(x) + 0x9e3779b9u * salt) + static_cast<std::uint32_t>(y));
@@ -59,26 +60,32 @@ std::uint32_t seed_of(const Tile& tile, int pixel, std::uint32_t salt) {
 
 }  // namespace
 
-void TileShader::find_entries(int slots, const Tile& tile, const Hits& hits) {
-    const std::uint64_t wanted = tile.wanted_blocks();
-    for (int block = 0; block < kBlocksPerCell; ++block)
-        if ((wanted >> block & 1u) != 0)
-            skipped_[block] = static_cast<std::uint32_t>(block * slots * kLanes) - hits.first(block);
+void TileShader::start(const SampleTable& samples, const Hits& hits) {
+    hits_ = &hits;
+    per_block_ = static_cast<std::uint32_t>(samples.slots()) * kLanes;
+    go_to_block(0);
+}
+
+void TileShader::go_to_block(std::uint32_t block) {
+    block_begin_ = block * per_block_;
+    skipped_ = block_begin_ - hits_->first(static_cast<int>(block));
 }
 
 std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& samples, const Tile& tile,
                                const Hits& hits, TileShade& out, bool roughly) {
     scene_ = &scene;
     by_quarters_ = scene.shadows().move();
+    start(samples, hits);
     shaded_ = 0;
     waiting_.start(scene);
     out.point_of_sample.assign(hits.triangle.size(), kBackground);
     out.colors.clear();
-    find_entries(samples.slots(), tile, hits);
     const SampleVector* vectors = samples.cell(tile.cell_x(), tile.cell_y(), room_).data();
     seen_.start(scene.frame(), cell_centre(scene.frame().view, tile.cell_x(), tile.cell_y()), vectors,
                 roughly ? kRoughLevel : 0);
 
+    const auto indices = samples.indices_of_cell(tile.cell_x(), tile.cell_y());
+    const bool sorted = TileSamples::is_by_pixel(samples);
     // Of what does not blur, pixels are the cells; there the mean of the samples is better than the middle.
     const bool in_cells = scene.options().rate == ShadingRate::kDecoupled;
     const int blocks_per_chunk = std::max(1, kSamplesPerChunk / (kLanes * samples.slots()));
@@ -88,8 +95,9 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
         for (std::size_t i = 0; i < samples_.triangle_count(); ++i) {
             const std::uint32_t triangle = samples_.triangle(i);
             const ShadedTriangle shaded(scene, triangle, samples.spp());
-            const Run run{shaded, triangle, samples_.places(i), samples_.pixels(i)};
             const bool cells = in_cells && (roughly || !shaded.is_sharp());
+            const std::span<const std::uint32_t> places = samples_.places(i);
+            const Run run{shaded, triangle, cells || sorted ? places : by_pixel(places, indices)};
             seen_.see(triangle, run.places, cells ? &shaded.cells() : nullptr);
             if (cells) {
                 find_cells(run, out);
@@ -107,7 +115,7 @@ void TileShader::shade_misses(const ShadingScene& scene, const SampleTable& samp
                               TileShade& out) {
     if (!scene.has_background()) return;
     scene_ = &scene;
-    find_entries(samples.slots(), tile, hits);
+    start(samples, hits);
     const SampleVector* vectors = samples.cell(tile.cell_x(), tile.cell_y(), room_).data();
     const int blocks_per_chunk = std::max(1, kSamplesPerChunk / (kLanes * samples.slots()));
     for (int block = 0; block < kBlocksPerCell; block += blocks_per_chunk) {
@@ -124,28 +132,54 @@ WaitingPoint& TileShader::add_point(const Run& run, const glm::vec3& barycentric
     return point;
 }
 
+// The samples pixel by pixel in index order, which says what is looked up of shadows: the same on any backend.
+std::span<const std::uint32_t> TileShader::by_pixel(std::span<const std::uint32_t> places,
+                                                    std::span<const std::uint16_t> indices) {
+    by_pixel_.resize(places.size());
+    for (std::size_t begin = 0; begin < places.size();) {
+        const std::uint32_t block_end = (places[begin] / per_block_ + 1) * per_block_;
+        std::size_t ends[kLanes + 1] = {}, end = begin;  // of each pixel's samples; at first their number
+        for (; end < places.size() && places[end] < block_end; ++end) ++ends[places[end] % kLanes + 1];
+        std::partial_sum(std::begin(ends), std::end(ends), std::begin(ends));
+        const auto first = by_pixel_.begin() + static_cast<std::ptrdiff_t>(begin);
+        for (std::size_t i = begin; i < end; ++i)
+            first[static_cast<std::ptrdiff_t>(ends[places[i] % kLanes]++)] = places[i];
+        const auto by_index = [&](std::uint32_t a, std::uint32_t b) { return indices[a] < indices[b]; };
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const auto from = first + static_cast<std::ptrdiff_t>(lane == 0 ? 0 : ends[lane - 1]);
+            const auto to = first + static_cast<std::ptrdiff_t>(ends[lane]);
+            if (!std::is_sorted(from, to, by_index)) std::sort(from, to, by_index);
+        }
+        begin = end;
+    }
+    return by_pixel_;
+}
+
 // The samples of one pixel share a point, or none do; those that see the back are another point.
 void TileShader::shade_pixels(const Run& run, const Tile& tile, TileShade& out) {
     const bool each = scene_->options().rate == ShadingRate::kSample;
     for (std::size_t begin = 0; begin < run.places.size();) {
-        const std::uint16_t pixel = run.pixels[begin];
+        const std::uint32_t block = run.places[begin] / per_block_, lane = run.places[begin] % kLanes;
+        const auto is_here = [&](std::uint32_t place) {
+            return place - block * per_block_ < per_block_ && place % kLanes == lane;
+        };
         PointSamples points[2];
         const std::size_t last = each ? begin + 1 : run.places.size();
-        for (; begin < last && run.pixels[begin] == pixel; ++begin) {
+        for (; begin < last && is_here(run.places[begin]); ++begin) {
             const glm::vec3 b = seen_.barycentrics(begin);
             PointSamples& point = points[seen_.key(begin).front()];
             point.sum += b;
             ++point.count;
             const int quarter = quarter_of(begin);
             point.quarter[quarter].add(b);
-            point_of(run.places[begin], pixel, out) = point.colors.at(quarter, out);
+            out.point_of_sample[entry(run.places[begin])] = point.colors.at(quarter, out);
         }
         for (int front = 0; front < 2; ++front) {
             const PointSamples& point = points[front];
             if (point.count == 0) continue;
             const glm::vec3 b = point.sum / static_cast<float>(point.count);
             WaitingPoint& waiting = add_point(run, b, front != 0, ShadingCell{}, out);
-            waiting.seed = seed_of(tile, pixel, static_cast<std::uint32_t>(front));
+            waiting.seed = seed_of(tile, block * kLanes + lane, static_cast<std::uint32_t>(front));
             waiting.colors = point.colors;
             for (int q = 0; q < kQuarters; ++q) point.quarter[by_quarters_ ? q : 0].write(q, waiting.shadow);
         }
@@ -167,7 +201,7 @@ void TileShader::find_cells(const Run& run, TileShade& out) {
             cells_.push_back({key, i, {}});
             cell_table_[at] = static_cast<std::uint32_t>(cells_.size());
         }
-        point_of(run.places[i], run.pixels[i], out) = cells_[cell_table_[at] - 1].colors.at(quarter_of(i), out);
+        out.point_of_sample[entry(run.places[i])] = cells_[cell_table_[at] - 1].colors.at(quarter_of(i), out);
     }
 }
 
@@ -190,20 +224,28 @@ void TileShader::shade_cells(const Run& run, TileShade& out) {
 // The mean of what a pixel's misses see of the surroundings, each along its own ray.
 void TileShader::shade_background(const SampleVector* samples, const Tile& tile, TileShade& out) {
     const CellCentre centre = cell_centre(scene_->frame().view, tile.cell_x(), tile.cell_y());
-    const std::span<const TileSamples::Miss> misses = samples_.misses();
-    for (std::size_t begin = 0; begin < misses.size();) {
-        const std::uint16_t pixel = misses[begin].pixel;
-        glm::vec3 sum(0.0f);
-        float count = 0.0f;
-        for (; begin < misses.size() && misses[begin].pixel == pixel; ++begin) {
-            const std::uint32_t place = misses[begin].place, lane = place % kLanes;
+    const std::span<const std::uint32_t> misses = samples_.misses();
+    for (std::size_t i = 0; i < misses.size();) {
+        const std::uint32_t end = (misses[i] / per_block_ + 1) * per_block_;
+        glm::vec4 sums[kLanes] = {};  // and how many
+        std::uint32_t points[kLanes];
+        for (; i < misses.size() && misses[i] < end; ++i) {
+            const std::uint32_t place = misses[i], lane = place % kLanes;
+            if (sums[lane].w == 0.0f) {
+                points[lane] = static_cast<std::uint32_t>(out.colors.size());
+                out.colors.emplace_back();
+            }
             const SampleVector& s = samples[place / kLanes];
-            sum += scene_->background(centre.x + s.x[lane], centre.y + s.y[lane], s.u[lane], s.v[lane], s.t[lane]);
-            count += 1.0f;
-            point_of(place, pixel, out) = static_cast<std::uint32_t>(out.colors.size());
+            sums[lane] += glm::vec4(
+                scene_->background(centre.x + s.x[lane], centre.y + s.y[lane], s.u[lane], s.v[lane], s.t[lane]), 1.0f);
+            out.point_of_sample[entry(place)] = points[lane];
         }
-        out.colors.push_back(contained(sum / count));
-        out.colors.back().w = 0.0f;
+        for (int lane = 0; lane < kLanes; ++lane) {
+            if (sums[lane].w == 0.0f) continue;
+            glm::vec4& color = out.colors[points[lane]];
+            color = contained(glm::vec3(sums[lane]) / sums[lane].w);
+            color.w = 0.0f;
+        }
     }
 }
 

@@ -4,7 +4,6 @@
 // 2010; here the mean instead of their last hit), or for each sample. Nothing hidden is ever shaded.
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -40,7 +39,6 @@ class TileShader {
         const ShadedTriangle& triangle;
         std::uint32_t number;
         std::span<const std::uint32_t> places;
-        std::span<const std::uint16_t> pixels;
     };
     /// A cell of the triangle in hand, and the side from which it is seen.
     struct SharedCell {
@@ -48,30 +46,38 @@ class TileShader {
         std::size_t first;  ///< the sample that was first to see it
         QuarterColors colors;
     };
-    void find_entries(int slots, const Tile& tile, const Hits& hits);
+    void start(const SampleTable& samples, const Hits& hits);
+    /// Of a sample its entry in Hits, by its place (TileSamples). Places come block by block.
+    std::uint32_t entry(std::uint32_t place) {
+        if (place - block_begin_ >= per_block_) go_to_block(place / per_block_);
+        return place - skipped_;
+    }
+    void go_to_block(std::uint32_t block);
+    std::span<const std::uint32_t> by_pixel(std::span<const std::uint32_t> places,
+                                            std::span<const std::uint16_t> indices);
     void shade_pixels(const Run& run, const Tile& tile, TileShade& out);
     void find_cells(const Run& run, TileShade& out);
     void shade_cells(const Run& run, TileShade& out);
     WaitingPoint& add_point(const Run& run, const glm::vec3& barycentrics, bool front, const ShadingCell& cell,
                             TileShade& out);
     void shade_background(const SampleVector* samples, const Tile& tile, TileShade& out);
-    /// Of the point that a sample shows, by its place in SampleTable::cell() and its pixel (TileSamples).
-    std::uint32_t& point_of(std::uint32_t place, std::uint16_t pixel, TileShade& out) const {
-        return out.point_of_sample[place - skipped_[pixel / kLanes]];
-    }
     int quarter_of(std::size_t sample) const {
         const int quarter = static_cast<int>(seen_.time(sample) * QuarterColors::kQuarters);
         return by_quarters_ ? std::min(quarter, QuarterColors::kQuarters - 1) : 0;
     }
 
     const ShadingScene* scene_ = nullptr;
-    bool by_quarters_ = false;                             // colours change while the shutter is open
-    std::array<std::uint32_t, kBlocksPerCell> skipped_{};  // samples of the cell before each block's that have no hits
+    const Hits* hits_ = nullptr;
+    bool by_quarters_ = false;       // colours change while the shutter is open
+    std::uint32_t per_block_ = 0;    // samples of a block
+    std::uint32_t block_begin_ = 0;  // place of the first sample of the block in hand
+    std::uint32_t skipped_ = 0;      // samples of the cell before that block which have no entry in Hits
     WaitingPoints waiting_;
     TileSamples samples_;
     SeenSamples seen_;
     std::int64_t shaded_ = 0;
     std::vector<SampleVector> room_;
+    std::vector<std::uint32_t> by_pixel_;
     std::vector<SharedCell> cells_;
     std::vector<std::uint32_t> cell_table_;  // open addressing: index into cells_ + 1, or 0
 };

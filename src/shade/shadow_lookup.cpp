@@ -69,13 +69,22 @@ HWY_INLINE Place blend(F f, const Vec b[3], const float* corners, const Place& o
     return p;
 }
 
-// The same of corners that each lane has for itself, `index` floats on.
-HWY_INLINE Place blend_each(F f, const Vec b[3], const float* corners, IVec index, const Place& offset) {
+// Entry `index` of a table, other in each lane, of `size` entries; ShadowReceiver::kReadable may be read.
+HWY_INLINE Vec entry(F f, const float* table, IVec index, int size) {
+    if constexpr (kWidth >= 8)
+        if (size <= kWidth) return hn::TableLookupLanes(hn::LoadU(f, table), hn::IndicesFromVec(f, index));
+    return hn::GatherIndex(f, table, index);
+}
+
+// The point that has these barycentrics, of corners as they are at the border `index` of quarters.
+HWY_INLINE Place blend_at(F f, const Vec b[3], const ShadowReceiver& receiver, IVec index, const Place& offset) {
     Place p = offset;
+    const auto coordinate = [&](int i)
+                                HWY_ATTR { return entry(f, receiver.at_borders(i), index, ShadowMap::kSamples + 1); };
     for (int k = 0; k < 3; ++k) {
-        p.x = plus_product(p.x, b[k], hn::GatherIndex(f, corners + 3 * k, index));
-        p.y = plus_product(p.y, b[k], hn::GatherIndex(f, corners + 3 * k + 1, index));
-        p.z = plus_product(p.z, b[k], hn::GatherIndex(f, corners + 3 * k + 2, index));
+        p.x = plus_product(p.x, b[k], coordinate(3 * k));
+        p.y = plus_product(p.y, b[k], coordinate(3 * k + 1));
+        p.z = plus_product(p.z, b[k], coordinate(3 * k + 2));
     }
     return p;
 }
@@ -141,9 +150,8 @@ class Lookup {
             begin = at(s);
             end = at(hn::Add(s, hn::Set(f, 1.0f / kSamples)));
         } else {
-            const IVec index = hn::Mul(q, hn::Set(d, 9));
-            begin = blend_each(f, b, receiver_.borders(), index, offset(f));
-            end = blend_each(f, b, receiver_.borders() + 9, index, offset(f));
+            begin = blend_at(f, b, receiver_, q, offset(f));
+            end = blend_at(f, b, receiver_, hn::Add(q, hn::Set(d, 1)), offset(f));
         }
         Vec bx = begin.x, by = begin.y, ex = end.x, ey = end.y;
         if constexpr (kPerspective) {
@@ -187,7 +195,7 @@ class Lookup {
 
     // Texels of one place for each lane.
     struct Texels {
-        IVec key, index;  // of the cell; of the sample in it
+        IVec x, y, key, index;  // of the map; of the cell; of the sample in it
     };
     HWY_INLINE Texels texels(F f, Vec x, Vec y, IVec quarter) const {
         const I d;
@@ -196,7 +204,7 @@ class Lookup {
         const IVec in_cell = hn::Set(d, kCellSize - 1);
         const IVec texel = hn::Add(hn::ShiftLeft<5>(hn::And(py, in_cell)), hn::And(px, in_cell));
         const IVec index = hn::Add(hn::ShiftLeft<2>(texel), quarter);
-        return {hn::Add(hn::ShiftLeft<16>(hn::ShiftRight<5>(py)), hn::ShiftRight<5>(px)), index};
+        return {px, py, hn::Add(hn::ShiftLeft<16>(hn::ShiftRight<5>(py)), hn::ShiftRight<5>(px)), index};
     }
 
     // Calls visit(lanes, cell) for each cell of the map that wanted lanes lie in.
@@ -213,13 +221,27 @@ class Lookup {
         }
     }
 
-    // Time of the map's samples there.
+    // Where in its texel, or when in its quarter, a sample is. Exact.
+    template <int kFirst, int kBits>
+    HWY_INLINE Vec share(F f, IVec word) const {
+        const U u;
+        const auto above = hn::ShiftLeft<32 - kFirst - kBits>(hn::BitCast(u, word));
+        const IVec bits = hn::BitCast(I(), hn::ShiftRight<32 - kBits>(above));
+        constexpr float kStep = 1.0f / (1 << kBits);
+        return plus_product(hn::Set(f, 0.5f * kStep), hn::ConvertTo(f, bits), hn::Set(f, kStep));
+    }
+    HWY_INLINE Vec time_in_quarter(F f, IVec word) const {
+        return share<2 * ShadowSamples::kPlaceBits, ShadowSamples::kTimeBits>(f, word);
+    }
+
+    // When in their quarters the map's samples there are.
     HWY_INLINE Vec times(F f, const Texels& at, Mask wanted) const {
-        Vec t = hn::Zero(f);
+        const I d;
+        IVec words = hn::Zero(d);
         for_each_cell(f, at.key, wanted, [&](Mask here, const ShadowReceiver::Cell& cell) HWY_ATTR {
-            t = hn::IfThenElse(here, hn::GatherIndex(f, cell.samples->t, at.index), t);
+            words = hn::IfThenElse(hn::RebindMask(d, here), hn::GatherIndex(d, cell.samples, at.index), words);
         });
-        return t;
+        return time_in_quarter(f, words);
     }
 
     // A map sample tells of the point only if the point is there at the sample's time: texels along the way are tried
@@ -228,11 +250,9 @@ class Lookup {
         const Vec far = hn::Set(f, 0.5f), one = hn::Set(f, 1.0f);
         Mask open = hn::And(wanted, hn::Gt(hn::Max(hn::Abs(way_x), hn::Abs(way_y)), far));
         Vec least = hn::Set(f, INFINITY), best = tau;
-        const Vec quarter = hn::ConvertTo(f, q);
         for (int attempt = 0; attempt < kAttempts && !hn::AllFalse(f, open); ++attempt) {
             const Texels at = texels(f, plus_product(x, tau, way_x), plus_product(y, tau, way_y), q);
-            const Vec then = hn::Sub(hn::Mul(times(f, at, open), hn::Set(f, kSamples)), quarter);
-            const Vec late = hn::Sub(then, tau);
+            const Vec late = hn::Sub(times(f, at, open), tau);
             const Vec miss = hn::Max(hn::Abs(hn::Mul(late, way_x)), hn::Abs(hn::Mul(late, way_y)));
             const Mask better = hn::And(open, hn::Lt(miss, least));
             least = hn::IfThenElse(better, miss, least);
@@ -289,20 +309,22 @@ class Lookup {
         }
 
         const Texels at = texels(f, x, y, q);
-        Vec occluder = hn::Set(f, INFINITY), sample_x = hn::Zero(f), sample_y = hn::Zero(f), t = hn::Zero(f);
+        Vec occluder = hn::Set(f, INFINITY);
+        IVec words = hn::Zero(d);
         for_each_cell(f, at.key, wanted, [&](Mask here, const ShadowReceiver::Cell& cell) HWY_ATTR {
             occluder = hn::IfThenElse(here, hn::GatherIndex(f, cell.depths, at.index), occluder);
-            sample_x = hn::IfThenElse(here, hn::GatherIndex(f, cell.samples->x, at.index), sample_x);
-            sample_y = hn::IfThenElse(here, hn::GatherIndex(f, cell.samples->y, at.index), sample_y);
-            if constexpr (kPath != Path::kStill)
-                t = hn::IfThenElse(here, hn::GatherIndex(f, cell.samples->t, at.index), t);
+            words = hn::IfThenElse(hn::RebindMask(d, here), hn::GatherIndex(d, cell.samples, at.index), words);
         });
         if (hn::AllTrue(f, hn::Eq(occluder, hn::Set(f, INFINITY)))) return kEvery;
-        // From the middle of the cell to that of the map.
-        const IVec column = hn::And(at.key, hn::Set(d, 0xffff)), row = hn::ShiftRight<16>(at.key);
-        const Vec size = hn::Set(f, kCellSize), to_middle = hn::Set(f, half_ - 0.5f * kCellSize);
-        sample_x = hn::Add(sample_x, hn::Sub(hn::Mul(hn::ConvertTo(f, column), size), to_middle));
-        sample_y = hn::Add(sample_y, hn::Sub(to_middle, hn::Mul(hn::ConvertTo(f, row), size)));
+        // From the middle of the map.
+        const Vec whole = hn::Set(f, half_), bottom = hn::Set(f, half_ - 1.0f);
+        const Vec sample_x =
+            hn::Add(share<0, ShadowSamples::kPlaceBits>(f, words), hn::Sub(hn::ConvertTo(f, at.x), whole));
+        const Vec sample_y = hn::Add(share<ShadowSamples::kPlaceBits, ShadowSamples::kPlaceBits>(f, words),
+                                     hn::Sub(bottom, hn::ConvertTo(f, at.y)));
+        Vec t = hn::Zero(f);
+        if constexpr (kPath != Path::kStill)
+            t = hn::Mul(hn::Add(hn::ConvertTo(f, q), time_in_quarter(f, words)), hn::Set(f, 1.0f / kSamples));
         return bits_of(f, hn::Or(hn::Not(wanted), is_lit(f, first, sample_x, sample_y, t, occluder)));
     }
 
@@ -314,22 +336,24 @@ class Lookup {
         barycentrics(f, first, b);
         const Vec scale = hn::Set(f, scale_);
         const I d;
-        IVec index = hn::Zero(d);
+        IVec segment = hn::Zero(d);
         Vec s = t;
         if constexpr (kPath == Path::kInPieces) {
             const Vec along = hn::Mul(t, hn::Set(f, static_cast<float>(receiver_.segments())));
-            const IVec segment = hn::Min(hn::ConvertTo(d, along), hn::Set(d, receiver_.segments() - 1));
+            segment = hn::Min(hn::ConvertTo(d, along), hn::Set(d, receiver_.segments() - 1));
             s = hn::Sub(along, hn::ConvertTo(f, segment));
-            index = hn::Mul(segment, hn::Set(d, 9));
         }
         for (int k = 0; k < 3; ++k) {
             Vec v[3];
             for (int axis = 0; axis < 3; ++axis) {
-                const float* knot = receiver_.knots() + 3 * k + axis;
                 if constexpr (kPath == Path::kInPieces) {
-                    const Vec now = hn::GatherIndex(f, knot, index), next = hn::GatherIndex(f, knot + 9, index);
+                    const float* table = receiver_.at_knots(3 * k + axis);
+                    const int size = receiver_.segments() + 1;
+                    const Vec now = entry(f, table, segment, size),
+                              next = entry(f, table, hn::Add(segment, hn::Set(d, 1)), size);
                     v[axis] = plus_product(now, s, hn::Sub(next, now));
                 } else {
+                    const float* knot = receiver_.knots() + 3 * k + axis;
                     v[axis] = hn::Set(f, knot[0]);
                     if constexpr (kPath == Path::kStraight)
                         v[axis] = plus_product(v[axis], s, hn::Set(f, knot[9] - knot[0]));

@@ -156,11 +156,20 @@ namespace pentaprism {
 ShadowSamples::ShadowSamples(std::uint32_t seed)
     : seed_(seed),
       table_(kSamples, seed, Lens{}, Grouping::kTime),
-      cells_(std::make_unique<Cell[]>(kPeriod * kPeriod)) {
+      cells_(std::make_unique<Cell[]>(kPeriod * kPeriod)),
+      words_(kPeriod * kPeriod * kPerCell) {
     std::vector<SampleVector> room;
+    // The part of [0, 1) in which `place` lies, and its middle.
+    const auto move = [](float& place, int bits) {
+        const auto parts = static_cast<float>(1 << bits);
+        const float part = std::clamp(std::floor(place * parts), 0.0f, parts - 1.0f);
+        place = (part + 0.5f) / parts;
+        return static_cast<std::uint32_t>(part);
+    };
     for (int cy = 0; cy < kPeriod; ++cy)
         for (int cx = 0; cx < kPeriod; ++cx) {
-            Cell& cell = cells_[index_of(cx, cy)];
+            const std::size_t index = index_of(cx, cy);
+            Cell& cell = cells_[index];
             const std::span<const SampleVector> vectors = table_.cell(cx, cy, room);
             for (int i = 0; i < kPerCell; ++i) {
                 const int texel = i / kSamples, column = texel % kCellSize, row = texel / kCellSize;
@@ -168,7 +177,16 @@ ShadowSamples::ShadowSamples(std::uint32_t seed)
                 const int lane = row % kBlockSize * kBlockSize + column % kBlockSize;
                 // Grouped by time, slots are by time.
                 const SampleVector& vector = vectors[block * kSamples + i % kSamples];
-                cell.x[i] = vector.x[lane], cell.y[i] = vector.y[lane], cell.t[i] = vector.t[lane];
+                const auto left = static_cast<float>(column - kCellSize / 2),
+                           bottom = static_cast<float>(kCellSize / 2 - 1 - row),
+                           quarter = static_cast<float>(i % kSamples);
+                float x = vector.x[lane] - left, y = vector.y[lane] - bottom,
+                      t = vector.t[lane] * static_cast<float>(kSamples) - quarter;
+                const std::uint32_t word =
+                    move(x, kPlaceBits) | move(y, kPlaceBits) << kPlaceBits | move(t, kTimeBits) << 2 * kPlaceBits;
+                words_[index * kPerCell + i] = static_cast<std::int32_t>(word);
+                cell.x[i] = left + x, cell.y[i] = bottom + y;
+                cell.t[i] = (quarter + t) / static_cast<float>(kSamples);
             }
         }
 }

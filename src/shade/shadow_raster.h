@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "sample/sample_table.h"
 #include "shade/casters.h"
@@ -16,13 +17,16 @@
 namespace pentaprism {
 
 /// Where and when a map's samples lie: four in each texel, one in each quarter of the shutter: those of SampleTable in
-/// another order. Index in a cell: (row * kCellSize + column) * kSamples + quarter.
+/// another order, moved to the middle of one of 2048 x 2048 parts of the texel and of 1024 of the quarter. Index in a
+/// cell: (row * kCellSize + column) * kSamples + quarter.
 class ShadowSamples {
   public:
     static constexpr int kSamples = 4, kPerCell = kCellSize * kCellSize * kSamples;
     struct alignas(64) Cell {
         float x[kPerCell], y[kPerCell], t[kPerCell];  ///< texels from the cell's middle, y up; t in [0, 1)
     };
+    /// The same in one word: from the lowest bit, the part of the texel rightwards and upwards, and of the quarter.
+    static constexpr int kPlaceBits = 11, kTimeBits = 10;
     static constexpr int kPeriod = 4;  ///< cells, both ways, of the table of all cells
     explicit ShadowSamples(std::uint32_t seed);
     const Cell& cell(int cx, int cy) const { return cells_[index_of(cx, cy)]; }
@@ -31,11 +35,13 @@ class ShadowSamples {
     /// The cells that there are; which of them serves a place: index_of().
     std::span<const Cell> cells() const { return {cells_.get(), kPeriod * kPeriod}; }
     std::size_t index_of(int cx, int cy) const;
+    const std::int32_t* words(int cx, int cy) const { return &words_[index_of(cx, cy) * kPerCell]; }
 
   private:
     std::uint32_t seed_;
     SampleTable table_;
     std::unique_ptr<Cell[]> cells_;
+    std::vector<std::int32_t> words_;
 };
 
 /// A cell of a level and what may be seen in it.

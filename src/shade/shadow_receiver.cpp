@@ -22,13 +22,17 @@ void ShadowReceiver::start(const WorldMotion& world, std::uint32_t triangle, con
             const glm::dvec3 p = glm::dvec3(world.points[at]) - view.position;
             for (int axis = 0; axis < 3; ++axis) *out++ = static_cast<float>(glm::dot(p, view.axes[axis]));
         }
-    if (!part.moves) return;
+    if (path_ != Path::kInPieces) return;
+    knots_stride_ = static_cast<std::size_t>(std::max(knots, kReadable));
+    at_knots_.resize(9 * knots_stride_);
+    for (int i = 0; i < 9; ++i)
+        for (int knot = 0; knot < knots; ++knot) at_knots_[i * knots_stride_ + knot] = knots_[9 * knot + i];
     for (int border = 0; border <= ShadowMap::kSamples; ++border) {
         const float along = static_cast<float>(border * segments_) / ShadowMap::kSamples;
         const int segment = std::min(static_cast<int>(along), segments_ - 1);
         const float s = along - static_cast<float>(segment);
         const float *now = &knots_[9 * segment], *next = now + 9;
-        for (int i = 0; i < 9; ++i) borders_[9 * border + i] = now[i] + s * (next[i] - now[i]);
+        for (int i = 0; i < 9; ++i) at_borders_[i][border] = now[i] + s * (next[i] - now[i]);
     }
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // A triangle that may lie in shadow, in the view of one light.
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -21,19 +21,23 @@ class ShadowReceiver {
     Path path() const { return path_; }
     int segments() const { return segments_; }
     const ShadowMap& map() const { return *map_; }
-    /// The corners in the light's view, [knot][corner][x, y, z]: at the knots, and at the borders of the quarters.
+    /// The corners in the light's view, [knot][corner][x, y, z].
     const float* knots() const { return knots_.data(); }
-    const float* borders() const { return borders_.data(); }
+    /// Of a path in pieces: coordinate 3 * corner + axis at all knots, and at the borders of the quarters of the
+    /// shutter. kReadable floats may be read of each.
+    static constexpr int kReadable = 16;
+    const float* at_knots(int coordinate) const { return &at_knots_[coordinate * knots_stride_]; }
+    const float* at_borders(int coordinate) const { return at_borders_[coordinate]; }
 
     /// Cell (key % 65536, key / 65536) of a level, with what casts up to a limit.
     struct Cell {
         const float* depths = nullptr;
-        const ShadowSamples::Cell* samples = nullptr;
+        const std::int32_t* samples = nullptr;  ///< ShadowSamples::words()
     };
     const Cell& cell(int exponent, int limit, std::int32_t key) {
         if (key != key_ || exponent != exponent_ || limit != limit_) {
             const int x = key & 0xffff, y = key >> 16;
-            cell_ = {map_->depths(exponent, limit, x, y), &map_->samples(x, y)};
+            cell_ = {map_->depths(exponent, limit, x, y), map_->samples(x, y)};
             key_ = key, exponent_ = exponent, limit_ = limit;
         }
         return cell_;
@@ -43,8 +47,9 @@ class ShadowReceiver {
     const ShadowMap* map_ = nullptr;
     Path path_ = Path::kStill;
     int segments_ = 1;
-    std::vector<float> knots_;
-    std::array<float, 9 * (ShadowMap::kSamples + 1)> borders_;
+    std::vector<float> knots_, at_knots_;  // the same, by knot and by coordinate
+    std::size_t knots_stride_ = 0;
+    float at_borders_[9][kReadable] = {};
     int exponent_ = 0, limit_ = 0;
     std::int32_t key_ = -1;
     Cell cell_;

@@ -11,48 +11,41 @@ void TileSamples::collect(const SampleTable& samples, const Tile& tile, const Hi
     counts_.clear();
     triangles_.clear();
     std::fill(table_.begin(), table_.end(), 0u);
-    const int slots = samples.slots();
+    const std::uint32_t per_block = static_cast<std::uint32_t>(samples.slots()) * kLanes;
+    const std::uint32_t starts = is_by_pixel(samples) ? kLanes : 1;
+    std::uint32_t last = kNoTriangle, local = 0;
     for (int block = first_block; block < last_block; ++block) {
         const int bx = tile.cell_x() * kCellBlocks + block % kCellBlocks;
         const int by = tile.cell_y() * kCellBlocks + block / kCellBlocks;
         if (bx * kBlockSize < tile.x0 || bx * kBlockSize >= tile.x1) continue;
         if (by * kBlockSize < tile.y0 || by * kBlockSize >= tile.y1 || !tile.wants(bx, by)) continue;
-        order_.read(samples, bx, by);
-        const std::size_t first = hits.first(block);
-        for (int lane = 0; lane < kLanes; ++lane) {
-            const std::uint16_t* slot = order_.slots(lane);
-            const auto pixel = static_cast<std::uint16_t>(block * kLanes + lane);
-            for (int index = 0; index < slots; ++index) {
-                const auto place = static_cast<std::uint32_t>((block * slots + slot[index]) * kLanes + lane);
-                const std::uint32_t triangle = hits.triangle[first + slot[index] * kLanes + lane];
+        const std::uint32_t first = static_cast<std::uint32_t>(block) * per_block;
+        const std::uint32_t* triangles = &hits.triangle[hits.first(block)];
+        for (std::uint32_t begin = first; begin < first + starts; ++begin)
+            for (std::uint32_t place = begin; place < first + per_block; place += starts) {
+                const std::uint32_t triangle = triangles[place - first];
                 if (triangle == kNoTriangle) {
-                    misses_.push_back({place, pixel});
+                    misses_.push_back(place);
                     continue;
                 }
-                const bool again = !entries_.empty() && triangles_[entries_.back().local] == triangle;
-                const std::uint32_t local = again ? entries_.back().local : local_triangle(triangle);
+                if (triangle != last) local = local_triangle(triangle);
+                last = triangle;
                 ++counts_[local];
-                entries_.push_back({place, local, pixel});
+                entries_.push_back({place, local});
             }
-        }
     }
     sort();
 }
 
 void TileSamples::sort() {
     places_.resize(entries_.size());
-    pixels_.resize(entries_.size());
     std::uint32_t sum = 0;
     for (std::uint32_t& count : counts_) {
         const std::uint32_t here = count;
         count = sum;
         sum += here;
     }
-    for (const Entry& entry : entries_) {
-        const std::uint32_t to = counts_[entry.local]++;
-        places_[to] = entry.place;
-        pixels_[to] = entry.pixel;
-    }
+    for (const Entry& entry : entries_) places_[counts_[entry.local]++] = entry.place;
 }
 
 std::uint32_t TileSamples::local_triangle(std::uint32_t triangle) {

@@ -1,6 +1,7 @@
 #pragma once
-// The covered samples of a part of a tile, triangle by triangle, and within a triangle pixel by pixel in index order: a
-// counting sort, which is stable. That order is the same whatever the tile's size and whoever shades it.
+// The samples of a part of a tile, triangle by triangle, and within a triangle in the order of Hits, where neighbours
+// are near each other in memory and in time: a counting sort, which is stable. Where nothing blurs, block by block and
+// pixel by pixel.
 
 #include <cstdint>
 #include <span>
@@ -8,7 +9,6 @@
 
 #include "cover/hits.h"
 #include "sample/sample_table.h"
-#include "shade/sample_order.h"
 
 namespace pentaprism {
 
@@ -21,37 +21,28 @@ class TileSamples {
     /// Triangles in the order in which they were met.
     std::size_t triangle_count() const { return triangles_.size(); }
     std::uint32_t triangle(std::size_t i) const { return triangles_[i]; }
-    /// Of the i-th triangle's samples: places in SampleTable::cell() (vector * kLanes + lane), and
-    /// pixels, which are 16 * (block of the cell) + lane.
-    std::span<const std::uint32_t> places(std::size_t i) const { return run(places_, i); }
-    std::span<const std::uint16_t> pixels(std::size_t i) const { return run(pixels_, i); }
+    /// Whether they come pixel by pixel in index order, as where nothing blurs: slots are indices there.
+    static bool is_by_pixel(const SampleTable& samples) { return samples.grouping() == Grouping::kStill; }
 
-    /// Samples that hit nothing, pixel by pixel.
-    struct Miss {
-        std::uint32_t place;
-        std::uint16_t pixel;
-    };
-    std::span<const Miss> misses() const { return misses_; }
+    /// Places in SampleTable::cell(), vector * kLanes + lane, of the i-th triangle's samples.
+    std::span<const std::uint32_t> places(std::size_t i) const {
+        const std::uint32_t begin = i == 0 ? 0 : counts_[i - 1];
+        return std::span(places_).subspan(begin, counts_[i] - begin);
+    }
+
+    /// Places of samples that hit nothing, block by block.
+    std::span<const std::uint32_t> misses() const { return misses_; }
 
   private:
     struct Entry {
         std::uint32_t place, local;
-        std::uint16_t pixel;
     };
-    template <class T>
-    std::span<const T> run(const std::vector<T>& sorted, std::size_t i) const {
-        const std::uint32_t begin = i == 0 ? 0 : counts_[i - 1];
-        return std::span(sorted).subspan(begin, counts_[i] - begin);
-    }
     void sort();
     std::uint32_t local_triangle(std::uint32_t triangle);
     void grow_table();
 
-    SampleOrder order_;
     std::vector<Entry> entries_;
-    std::vector<Miss> misses_;
-    std::vector<std::uint32_t> places_;
-    std::vector<std::uint16_t> pixels_;
+    std::vector<std::uint32_t> misses_, places_;
     std::vector<std::uint32_t> triangles_;  // of each local number
     std::vector<std::uint32_t> counts_;     // of each local number; after sorting the end of its run
     std::vector<std::uint32_t> table_;      // open addressing: number + 1, or 0

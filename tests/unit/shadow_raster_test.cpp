@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/aligned.h"
-#include "small_scene.h"
+#include "cover/exact.h"
 #include "support/isa.h"
 #include "support/random.h"
 
@@ -59,10 +59,46 @@ Frame in_texels(Frame frame) {
     return frame;
 }
 
+// The nearest depth at each sample of a cell: every triangle against every sample.
+std::vector<float> exact_depths(const Frame& frame, const ShadowSamples::Cell& samples, const CellCentre& centre) {
+    std::vector<float> depths(ShadowSamples::kPerCell, INFINITY);
+    for (std::uint32_t triangle = 0; triangle < frame.triangle_count(); ++triangle)
+        for (int segment = 0; segment < frame.parts[frame.part_of[triangle]].segments; ++segment) {
+            const LocalTriangle local = localize(frame, triangle, segment, centre);
+            for (int i = 0; i < ShadowSamples::kPerCell; ++i) {
+                const SampleHit hit = cover_sample(local, {samples.x[i], samples.y[i], 0, 0, samples.t[i]}, centre);
+                if (hit.hit) depths[i] = std::min(depths[i], hit.depth);
+            }
+        }
+    return depths;
+}
+
+TEST(ShadowRaster, SamplesAreThoseOfTheTableMovedALittleAndWordsSayWhere) {
+    const ShadowSamples samples(3);
+    for (int cell = 0; cell < 36; ++cell) {
+        const int cx = cell % 6, cy = cell / 6;
+        const ShadowSamples::Cell& places = samples.cell(cx, cy);
+        for (int i = 0; i < ShadowSamples::kPerCell; ++i) {
+            const int texel = i / ShadowSamples::kSamples, column = texel % kCellSize, row = texel / kCellSize;
+            const int px = cx * kCellSize + column, py = cy * kCellSize + row, quarter = i % ShadowSamples::kSamples;
+            int index = 0;
+            while (samples.table().slot_of(px, py, index) != quarter) ++index;
+            const LocalSample expected = local_sample(samples.table().sample(px, py, index), px, py);
+            ASSERT_LE(std::abs(places.x[i] - expected.hx), 0x1p-12f) << i;
+            ASSERT_LE(std::abs(places.y[i] - expected.hy), 0x1p-12f) << i;
+            ASSERT_LE(std::abs(places.t[i] - expected.t), 0x1p-13f) << i;
+            const auto word = static_cast<std::uint32_t>(samples.words(cx, cy)[i]);
+            ASSERT_EQ(places.x[i], static_cast<float>(column - 16) + (0.5f + static_cast<float>(word & 2047)) / 2048);
+            ASSERT_EQ(places.y[i],
+                      static_cast<float>(15 - row) + (0.5f + static_cast<float>(word >> 11 & 2047)) / 2048);
+            ASSERT_EQ(places.t[i], (static_cast<float>(quarter) + (0.5f + static_cast<float>(word >> 22)) / 1024) / 4);
+        }
+    }
+}
+
 TEST(ShadowRaster, ACellHoldsWhatTheExactTestSeesOnEveryCpuTarget) {
     support::Random random(7);
     const ShadowSamples samples(3);
-    const SampleTable table(ShadowSamples::kSamples, 3, Lens{}, Grouping::kTime);
     std::size_t hits_seen = 0, differ = 0, wrong = 0;
     for (int round = 0; round < 10; ++round)
         for (const bool perspective : {true, false}) {
@@ -86,13 +122,10 @@ TEST(ShadowRaster, ACellHoldsWhatTheExactTestSeesOnEveryCpuTarget) {
                     EXPECT_EQ(std::memcmp(depths.data(), others.data(), sizeof(float) * depths.size()), 0) << isa;
                     EXPECT_EQ(std::memcmp(bounds.data(), other_bounds.data(), sizeof(float) * bounds.size()), 0) << isa;
                 }
-                Hits hits;
-                const Tile tile{cx * kCellSize, cy * kCellSize, (cx + 1) * kCellSize, (cy + 1) * kCellSize};
-                small_scene::find_hits(exact, table, tile, hits);
+                const std::vector<float> exact_ones =
+                    exact_depths(exact, samples.cell(cx, cy), cell_centre(exact.view, cx, cy));
                 for (int i = 0; i < ShadowSamples::kPerCell; ++i) {
-                    const int texel = i / ShadowSamples::kSamples;
-                    const float expected = hits.depth[hits.entry(
-                        tile.x0 + texel % kCellSize, tile.y0 + texel / kCellSize, i % ShadowSamples::kSamples)];
+                    const float expected = exact_ones[i];
                     hits_seen += std::isfinite(expected);
                     wrong += !(bounds[i] >= depths[i]) || std::isfinite(bounds[i]) != std::isfinite(depths[i]);
                     differ += !(depths[i] == expected || std::abs(depths[i] - expected) < 1e-4f * expected);
