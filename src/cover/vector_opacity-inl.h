@@ -9,8 +9,8 @@
 #endif
 
 #include <bit>
-#include <cstring>
 
+#include "base/bytes_at-inl.h"
 #include "cover/lanes-inl.h"
 #include "frame/opacity.h"
 
@@ -48,17 +48,6 @@ HWY_INLINE IntVec wrapped(I i, Wrap wrap, IntVec texel, int size) {
     return hn::IfThenElse(hn::Gt(texel, last), hn::Sub(hn::Set(i, 2 * size - 1), texel), texel);
 }
 
-// The four codes that begin at each texel, which needs Pyramid::kBeyondCodes.
-HWY_INLINE IntVec codes_at(I i, const std::uint8_t* codes, IntVec texel) {
-#if HWY_TARGET == HWY_SCALAR  // where nothing may be read across words
-    std::int32_t word;
-    std::memcpy(&word, codes + hn::GetLane(texel), sizeof word);
-    return hn::Set(i, word);
-#else
-    return hn::GatherOffset(i, reinterpret_cast<const std::int32_t*>(codes), texel);
-#endif
-}
-
 HWY_INLINE Vec texture_alpha(F f, const OpacityTerms& terms, Vec s, Vec t, Mask hit) {
     const I i;
     const TextureRef& ref = *terms.ref;
@@ -75,9 +64,9 @@ HWY_INLINE Vec texture_alpha(F f, const OpacityTerms& terms, Vec s, Vec t, Mask 
     const IntVec left = wrapped(i, ref.wrap_s, column0, width);
     const IntVec upper = hn::Mul(wrapped(i, ref.wrap_t, row0, height), row);
     const auto inside = hn::RebindMask(i, hit);
-    // What begins at a texel: its code and those to its right. Other lanes may lie anywhere.
+    // A texel's code and those to its right (Pyramid::kBeyondCodes). Other lanes may lie anywhere.
     const auto codes_from = [&](IntVec texel)
-                                HWY_ATTR { return codes_at(i, codes, hn::IfThenElseZero(inside, texel)); };
+                                HWY_ATTR { return bytes_at(i, codes, hn::IfThenElseZero(inside, texel)); };
     const auto code = [&](IntVec word) HWY_ATTR { return hn::ConvertTo(f, hn::And(word, hn::Set(i, 0xff))); };
     const IntVec upper_left = codes_from(hn::Add(upper, left));
     if (ref.nearest) return hn::Mul(code(upper_left), hn::Set(f, 1.0f / 255.0f));

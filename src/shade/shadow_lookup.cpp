@@ -14,6 +14,7 @@
 #include <glm/geometric.hpp>
 #include <hwy/highway.h>
 
+#include "base/bytes_at-inl.h"
 #include "sample/net.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -51,6 +52,13 @@ HWY_INLINE std::uint32_t bits_of(F f, Mask mask) {
     std::uint8_t bytes[8] = {};
     hn::StoreMaskBits(f, mask, bytes);
     return bytes[0] | static_cast<std::uint32_t>(kWidth > 8 ? bytes[1] : 0) << 8;
+}
+
+// mix() of sample/net.h.
+HWY_INLINE hn::Vec<U> mixed(U u, hn::Vec<U> h) {
+    h = hn::Mul(hn::Xor(h, hn::ShiftRight<16>(h)), hn::Set(u, 0x7feb352du));
+    h = hn::Mul(hn::Xor(h, hn::ShiftRight<15>(h)), hn::Set(u, 0x846ca68bu));
+    return hn::Xor(h, hn::ShiftRight<16>(h));
 }
 
 // Of a small exponent; std::ldexp() is a call.
@@ -221,7 +229,7 @@ class Lookup {
         }
     }
 
-    // Where in its texel, or when in its quarter, a sample is. Exact.
+    // Where in its texel, or when in its quarter, a sample is, by some bits of each word. Exact.
     template <int kFirst, int kBits>
     HWY_INLINE Vec share(F f, IVec word) const {
         const U u;
@@ -230,18 +238,27 @@ class Lookup {
         constexpr float kStep = 1.0f / (1 << kBits);
         return plus_product(hn::Set(f, 0.5f * kStep), hn::ConvertTo(f, bits), hn::Set(f, kStep));
     }
-    HWY_INLINE Vec time_in_quarter(F f, IVec word) const {
-        return share<2 * ShadowSamples::kPlaceBits, ShadowSamples::kTimeBits>(f, word);
-    }
 
-    // When in their quarters the map's samples there are.
+    // When in their quarters the map's samples there are; for that the cells need not be drawn.
     HWY_INLINE Vec times(F f, const Texels& at, Mask wanted) const {
         const I d;
-        IVec words = hn::Zero(d);
-        for_each_cell(f, at.key, wanted, [&](Mask here, const ShadowReceiver::Cell& cell) HWY_ATTR {
-            words = hn::IfThenElse(hn::RebindMask(d, here), hn::GatherIndex(d, cell.samples, at.index), words);
-        });
-        return time_in_quarter(f, words);
+        const U u;
+        const ShadowSamples& samples = receiver_.map().samples();
+        // ShadowSamples::index_of()
+        constexpr int kToCell = std::countr_zero(unsigned{kCellSize}),
+                      kToPeriod = kToCell + std::countr_zero(unsigned{ShadowSamples::kPeriod});
+        const auto x = hn::BitCast(u, at.x), y = hn::BitCast(u, at.y);
+        const auto hash = mixed(u, hn::Add(mixed(u, hn::Add(hn::ShiftRight<kToPeriod>(x), hn::Set(u, samples.seed()))),
+                                           hn::ShiftRight<kToPeriod>(y)));
+        const auto in_period = [&](auto cell, auto shift) HWY_ATTR {
+            return hn::And(hn::Add(cell, shift), hn::Set(u, ShadowSamples::kPeriod - 1));
+        };
+        const auto column = in_period(hn::ShiftRight<kToCell>(x), hash),
+                   row = in_period(hn::ShiftRight<kToCell>(y), hn::ShiftRight<8>(hash));
+        const auto cell = hn::Add(hn::Mul(row, hn::Set(u, ShadowSamples::kPeriod)), column);
+        const IVec place = hn::Add(hn::Mul(hn::BitCast(d, cell), hn::Set(d, ShadowSamples::kPerCell)), at.index);
+        const IVec parts = bytes_at(d, samples.times(), hn::IfThenElseZero(hn::RebindMask(d, wanted), place));
+        return share<0, ShadowSamples::kTimeBits>(f, parts);
     }
 
     // A map sample tells of the point only if the point is there at the sample's time: texels along the way are tried
@@ -267,11 +284,7 @@ class Lookup {
     // Two numbers in [0, 1/2), the same for the four lanes of a quarter.
     HWY_INLINE void jitter(F f, IVec quarter, Vec& x, Vec& y) const {
         const U u;
-        // mix() of sample/net.h
-        auto h = hn::Add(hn::Set(u, seed_), hn::BitCast(u, hn::ShiftLeft<1>(quarter)));
-        h = hn::Mul(hn::Xor(h, hn::ShiftRight<16>(h)), hn::Set(u, 0x7feb352du));
-        h = hn::Mul(hn::Xor(h, hn::ShiftRight<15>(h)), hn::Set(u, 0x846ca68bu));
-        h = hn::Xor(h, hn::ShiftRight<16>(h));
+        const auto h = mixed(u, hn::Add(hn::Set(u, seed_), hn::BitCast(u, hn::ShiftLeft<1>(quarter))));
         const Vec unit = hn::Set(f, 0.5f / 65536.0f);
         const I d;
         x = hn::Mul(hn::ConvertTo(f, hn::BitCast(d, hn::And(h, hn::Set(u, 0xffffu)))), unit);
@@ -317,14 +330,14 @@ class Lookup {
         });
         if (hn::AllTrue(f, hn::Eq(occluder, hn::Set(f, INFINITY)))) return kEvery;
         // From the middle of the map.
+        constexpr int kPlaceBits = ShadowSamples::kPlaceBits;
         const Vec whole = hn::Set(f, half_), bottom = hn::Set(f, half_ - 1.0f);
-        const Vec sample_x =
-            hn::Add(share<0, ShadowSamples::kPlaceBits>(f, words), hn::Sub(hn::ConvertTo(f, at.x), whole));
-        const Vec sample_y = hn::Add(share<ShadowSamples::kPlaceBits, ShadowSamples::kPlaceBits>(f, words),
-                                     hn::Sub(bottom, hn::ConvertTo(f, at.y)));
+        const Vec sample_x = hn::Add(share<0, kPlaceBits>(f, words), hn::Sub(hn::ConvertTo(f, at.x), whole));
+        const Vec sample_y = hn::Add(share<kPlaceBits, kPlaceBits>(f, words), hn::Sub(bottom, hn::ConvertTo(f, at.y)));
         Vec t = hn::Zero(f);
         if constexpr (kPath != Path::kStill)
-            t = hn::Mul(hn::Add(hn::ConvertTo(f, q), time_in_quarter(f, words)), hn::Set(f, 1.0f / kSamples));
+            t = hn::Mul(hn::Add(hn::ConvertTo(f, q), share<2 * kPlaceBits, ShadowSamples::kTimeBits>(f, words)),
+                        hn::Set(f, 1.0f / kSamples));
         return bits_of(f, hn::Or(hn::Not(wanted), is_lit(f, first, sample_x, sample_y, t, occluder)));
     }
 

@@ -49,8 +49,7 @@ class ShadowMap {
     const float* depths(int exponent, int limit, int cx, int cy) const;
     /// Whether these depths are those of a cell in which nothing is.
     static bool is_empty(const float* depths);
-    /// ShadowSamples::words() of the cell.
-    const std::int32_t* samples(int cx, int cy) const { return samples_.words(cx, cy); }
+    const ShadowSamples& samples() const { return samples_; }
 
     std::int64_t cells_rendered() const { return cells_rendered_; }
 

@@ -157,7 +157,8 @@ ShadowSamples::ShadowSamples(std::uint32_t seed)
     : seed_(seed),
       table_(kSamples, seed, Lens{}, Grouping::kTime),
       cells_(std::make_unique<Cell[]>(kPeriod * kPeriod)),
-      words_(kPeriod * kPeriod * kPerCell) {
+      words_(kPeriod * kPeriod * kPerCell),
+      times_(words_.size() + 3) {
     std::vector<SampleVector> room;
     // The part of [0, 1) in which `place` lies, and its middle.
     const auto move = [](float& place, int bits) {
@@ -182,9 +183,11 @@ ShadowSamples::ShadowSamples(std::uint32_t seed)
                            quarter = static_cast<float>(i % kSamples);
                 float x = vector.x[lane] - left, y = vector.y[lane] - bottom,
                       t = vector.t[lane] * static_cast<float>(kSamples) - quarter;
+                const std::uint32_t time = move(t, kTimeBits);
                 const std::uint32_t word =
-                    move(x, kPlaceBits) | move(y, kPlaceBits) << kPlaceBits | move(t, kTimeBits) << 2 * kPlaceBits;
+                    move(x, kPlaceBits) | move(y, kPlaceBits) << kPlaceBits | time << 2 * kPlaceBits;
                 words_[index * kPerCell + i] = static_cast<std::int32_t>(word);
+                times_[index * kPerCell + i] = static_cast<std::uint8_t>(time);
                 cell.x[i] = left + x, cell.y[i] = bottom + y;
                 cell.t[i] = (quarter + t) / static_cast<float>(kSamples);
             }

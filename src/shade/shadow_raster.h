@@ -17,7 +17,7 @@
 namespace pentaprism {
 
 /// Where and when a map's samples lie: four in each texel, one in each quarter of the shutter: those of SampleTable in
-/// another order, moved to the middle of one of 2048 x 2048 parts of the texel and of 1024 of the quarter. Index in a
+/// another order, moved to the middle of one of 4096 x 4096 parts of the texel and of 256 of the quarter. Index in a
 /// cell: (row * kCellSize + column) * kSamples + quarter.
 class ShadowSamples {
   public:
@@ -26,7 +26,7 @@ class ShadowSamples {
         float x[kPerCell], y[kPerCell], t[kPerCell];  ///< texels from the cell's middle, y up; t in [0, 1)
     };
     /// The same in one word: from the lowest bit, the part of the texel rightwards and upwards, and of the quarter.
-    static constexpr int kPlaceBits = 11, kTimeBits = 10;
+    static constexpr int kPlaceBits = 12, kTimeBits = 8;
     static constexpr int kPeriod = 4;  ///< cells, both ways, of the table of all cells
     explicit ShadowSamples(std::uint32_t seed);
     const Cell& cell(int cx, int cy) const { return cells_[index_of(cx, cy)]; }
@@ -36,12 +36,16 @@ class ShadowSamples {
     std::span<const Cell> cells() const { return {cells_.get(), kPeriod * kPeriod}; }
     std::size_t index_of(int cx, int cy) const;
     const std::int32_t* words(int cx, int cy) const { return &words_[index_of(cx, cy) * kPerCell]; }
+    /// The part of the quarter alone, of which many are asked for each that is used: [index_of()][index in the cell].
+    /// Three more may be read.
+    const std::uint8_t* times() const { return times_.data(); }
 
   private:
     std::uint32_t seed_;
     SampleTable table_;
     std::unique_ptr<Cell[]> cells_;
     std::vector<std::int32_t> words_;
+    std::vector<std::uint8_t> times_;
 };
 
 /// A cell of a level and what may be seen in it.

@@ -37,7 +37,7 @@ class ShadowReceiver {
     const Cell& cell(int exponent, int limit, std::int32_t key) {
         if (key != key_ || exponent != exponent_ || limit != limit_) {
             const int x = key & 0xffff, y = key >> 16;
-            cell_ = {map_->depths(exponent, limit, x, y), map_->samples(x, y)};
+            cell_ = {map_->depths(exponent, limit, x, y), map_->samples().words(x, y)};
             key_ = key, exponent_ = exponent, limit_ = limit;
         }
         return cell_;

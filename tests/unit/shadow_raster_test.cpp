@@ -84,14 +84,15 @@ TEST(ShadowRaster, SamplesAreThoseOfTheTableMovedALittleAndWordsSayWhere) {
             int index = 0;
             while (samples.table().slot_of(px, py, index) != quarter) ++index;
             const LocalSample expected = local_sample(samples.table().sample(px, py, index), px, py);
-            ASSERT_LE(std::abs(places.x[i] - expected.hx), 0x1p-12f) << i;
-            ASSERT_LE(std::abs(places.y[i] - expected.hy), 0x1p-12f) << i;
-            ASSERT_LE(std::abs(places.t[i] - expected.t), 0x1p-13f) << i;
+            ASSERT_LE(std::abs(places.x[i] - expected.hx), 0x1p-13f) << i;
+            ASSERT_LE(std::abs(places.y[i] - expected.hy), 0x1p-13f) << i;
+            ASSERT_LE(std::abs(places.t[i] - expected.t), 0x1p-11f) << i;
             const auto word = static_cast<std::uint32_t>(samples.words(cx, cy)[i]);
-            ASSERT_EQ(places.x[i], static_cast<float>(column - 16) + (0.5f + static_cast<float>(word & 2047)) / 2048);
+            ASSERT_EQ(places.x[i], static_cast<float>(column - 16) + (0.5f + static_cast<float>(word & 4095)) / 4096);
             ASSERT_EQ(places.y[i],
-                      static_cast<float>(15 - row) + (0.5f + static_cast<float>(word >> 11 & 2047)) / 2048);
-            ASSERT_EQ(places.t[i], (static_cast<float>(quarter) + (0.5f + static_cast<float>(word >> 22)) / 1024) / 4);
+                      static_cast<float>(15 - row) + (0.5f + static_cast<float>(word >> 12 & 4095)) / 4096);
+            ASSERT_EQ(places.t[i], (static_cast<float>(quarter) + (0.5f + static_cast<float>(word >> 24)) / 256) / 4);
+            ASSERT_EQ(samples.times()[samples.index_of(cx, cy) * ShadowSamples::kPerCell + i], word >> 24);
         }
     }
 }
