@@ -54,7 +54,7 @@ class RecordedTile {
   public:
     RecordedTile(const Frame& frame, const SampleTable& samples, const Bins& bins, const Tile& tile)
         : work_{frame, samples, bins.triangles(), bins.tile(tile.x0, tile.y0), tile},
-          of_table_((hits_.reset(samples.slots()), work_)),
+          of_table_((hits_.reset(samples.slots(), tile), work_)),
           state_(work_, of_table_.arrangement, hits_, counts_) {
         open(samples);
         const std::vector<std::uint32_t> order = front_to_back(work_);
@@ -80,7 +80,7 @@ class RecordedTile {
             pair.ask_edges(state_, batches_[pair.batch].planes, pair.k, pair.listed.size());
         }
     }
-    void start_depths() { hits_.reset(state_.slots()); }
+    void start_depths() { hits_.reset(state_.slots(), work_.tile); }
     void test_exactly() {
         for (const Pair& pair : pairs_) {
             std::copy(pair.kept.begin(), pair.kept.end(), state_.jobs.begin());

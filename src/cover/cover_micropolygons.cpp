@@ -65,6 +65,7 @@ class MicropolygonTile {
           samples_(work.samples.cell(work.tile.cell_x(), work.tile.cell_y(), sample_room_).data()),
           domains_(work.samples.domains(work.tile.cell_x(), work.tile.cell_y(), domain_room_)),
           slots_(work.samples.slots()),
+          wanted_(work.tile.wanted_blocks()),
           by_stratum_(domains_.size()),
           boxes_(domains_.size()) {
         for (std::size_t stratum = 0; stratum < domains_.size(); ++stratum)
@@ -117,10 +118,10 @@ class MicropolygonTile {
 
     void update_farthest() {
         const std::size_t n = static_cast<std::size_t>(slots_) * kLanes;
-        for (std::size_t block = 0; block < kBlocksPerCell; ++block) {
-            float farthest = 0.0f;
-            for (std::size_t i = block * n; i < (block + 1) * n; ++i) farthest = std::max(farthest, hits_.depth[i]);
-            farthest_[block] = farthest;
+        for (std::uint64_t m = wanted_; m != 0; m &= m - 1) {
+            const int block = std::countr_zero(m);
+            const float* depths = &hits_.depth[hits_.first(block)];
+            farthest_[block] = std::max(0.0f, *std::max_element(depths, depths + n));
         }
     }
 
@@ -164,7 +165,7 @@ class MicropolygonTile {
         std::uint64_t blocks = 0;
         for (int row = row0; row <= row1; ++row)
             blocks |= ((0xffull >> (7 - column1)) & (0xffull << column0)) << (8 * row);
-        return blocks;
+        return blocks & wanted_;
     }
 
     // The vectors of the stratum in those blocks.
@@ -187,7 +188,7 @@ class MicropolygonTile {
         const SampleHit hit = cover_sample(micro.piece, sample, centre_);
         if (!hit.hit) return;
         ++counts_.covered;
-        const std::size_t at = std::size_t{vector} * kLanes + lane;
+        const std::size_t at = hits_.first(block) + static_cast<std::size_t>(slot) * kLanes + lane;
         const bool nearer =
             hit.depth < hits_.depth[at] || (hit.depth == hits_.depth[at] && triangle.triangle < hits_.triangle[at]);
         if (!nearer) return;
@@ -212,6 +213,7 @@ class MicropolygonTile {
     const SampleVector* samples_;      // of the cell
     std::span<const Domain> domains_;  // of its strata
     int slots_;
+    std::uint64_t wanted_;  // blocks
     std::vector<std::vector<SlotBlocks>> by_stratum_;
     Asked all_, group_;
     std::vector<LocalBox> boxes_;  // of the strata that are asked about

@@ -335,10 +335,15 @@ void cover_shared_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
         state.u[i] = triple.u, state.v[i] = triple.v, state.t[i] = triple.t;
     }
     cover_front_to_back(state);
+    const std::uint32_t of_block = static_cast<std::uint32_t>(work.samples.spp()) * kLanes;
+    const bool whole_cell = hits.triangle.size() == state.triangle.size();
     for (std::size_t i = 0; i < state.triangle.size(); ++i) {
         if (state.triangle[i] == kNoTriangle) continue;
-        hits.depth[state.samples.place[i]] = state.depth[i];
-        hits.triangle[state.samples.place[i]] = state.triangle[i];
+        const std::uint32_t place = state.samples.place[i];
+        const std::uint32_t entry =
+            whole_cell ? place : hits.first(static_cast<int>(place / of_block)) + place % of_block;
+        hits.depth[entry] = state.depth[i];
+        hits.triangle[entry] = state.triangle[i];
     }
 }
 

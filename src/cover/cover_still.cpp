@@ -58,7 +58,7 @@ void cover_batch(StillTile& tile, StillBatch& batch, std::uint32_t* jobs) {
     std::size_t count = 0;
     for (int k = 0; k < batch.count; ++k) {
         const CellRect rect = rect_of(*batch.binned[k], tile.work.tile);
-        const std::size_t listed = list_pixels(batch, k, rect, tile.farthest, jobs + count);
+        const std::size_t listed = list_pixels(batch, k, rect, tile.blocks, tile.farthest, jobs + count);
         if (batch.special[k] != 0)
             cover_special(tile, batch, k, jobs + count, listed);
         else
@@ -117,12 +117,13 @@ HWY_INLINE void transpose(const T* HWY_RESTRICT from, std::size_t stride, T* HWY
 
 // From the order of PixelSamples to that of Hits, in place.
 template <class T>
-void arrange_by_slot(T* values, std::size_t spp) {
+void arrange_by_slot(AlignedVector<T>& values, std::size_t spp) {
     const std::size_t size = kLanes * spp;  // of a block
     AlignedVector<T> block(size);
-    for (T* end = values + kBlocksPerCell * size; values != end; values += size) {
-        std::copy_n(values, size, block.data());
-        for (std::size_t slot = 0; slot < spp; slot += kLanes) transpose(&block[slot], spp, values + slot * kLanes);
+    for (std::size_t first = 0; first < values.size(); first += size) {
+        std::copy_n(&values[first], size, block.data());
+        for (std::size_t slot = 0; slot < spp; slot += kLanes)
+            transpose(&block[slot], spp, &values[first + slot * kLanes]);
     }
 }
 
@@ -135,8 +136,9 @@ void set_outside(StillTile& tile, float depth) {
         const int block = pixel / kLanes, lane = pixel % kLanes;
         const int px = left + block % kCellBlocks * kBlockSize + lane % kBlockSize;
         const int py = top + block / kCellBlocks * kBlockSize + lane / kBlockSize;
-        if (px >= t.x0 && px < t.x1 && py >= t.y0 && py < t.y1 && t.blocks >> block & 1u) continue;
-        std::fill_n(&tile.depth[pixel * tile.spp], tile.spp, depth);
+        const bool has_hits = (tile.blocks >> block & 1u) != 0;
+        if (has_hits && px < t.x1 && py < t.y1) continue;
+        if (has_hits) std::fill_n(&tile.depth[tile.entry(pixel * tile.spp, pixel)], tile.spp, depth);
         tile.farthest[pixel] = depth;
     }
 }
@@ -148,8 +150,8 @@ void cover_still_tile(const TileWork& work, Hits& hits, CoverCounts& counts) {
     set_outside(tile, -INFINITY);
     cover_front_to_back(tile);
     set_outside(tile, INFINITY);
-    arrange_by_slot(tile.depth, tile.spp);
-    arrange_by_slot(tile.triangle, tile.spp);
+    arrange_by_slot(hits.depth, tile.spp);
+    arrange_by_slot(hits.triangle, tile.spp);
     counts.tested += tile.tested;
     counts.covered += tile.covered;
 }

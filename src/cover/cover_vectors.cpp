@@ -214,13 +214,14 @@ void cover_arranged(const TileWork& work, const Arrangement& arrangement, Hits& 
 
     // Pixels beyond the tile's border take no hits: nothing is nearer than -infinity.
     auto for_each_outside_lane = [&](auto&& visit) {
-        for (int b = 0; b < kBlocksPerCell; ++b)
+        for (std::uint64_t m = state.tile_blocks; m != 0; m &= m - 1)
             for (int lane = 0; lane < kLanes; ++lane) {
+                const int b = std::countr_zero(m);
                 const int px = left + b % kCellBlocks * kBlockSize + lane % kBlockSize;
                 const int py = top + b / kCellBlocks * kBlockSize + lane / kBlockSize;
                 if (px < work.tile.x1 && py < work.tile.y1) continue;
                 for (int slot = 0; slot < slots; ++slot)
-                    visit((static_cast<std::size_t>(b) * slots + slot) * kLanes + lane);
+                    visit(hits.first(b) + static_cast<std::size_t>(slot) * kLanes + lane);
             }
     };
     const bool cut = work.tile.x1 % kBlockSize != 0 || work.tile.y1 % kBlockSize != 0;

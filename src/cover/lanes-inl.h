@@ -95,7 +95,7 @@ struct Arrangement {
     const SampleVector* samples;  // [block * slots + slot], or, where `places` is not empty, [slot * blocks + block]
     std::span<const Domain> domains;
     std::span<const Stratum> strata;
-    std::span<const std::uint32_t> places;  // of each lane its entry in Hits; empty: the same order
+    std::span<const std::uint32_t> places;  // of each lane its place in SampleTable::cell(); empty: the same order
 };
 
 // As in SampleTable.
@@ -148,7 +148,7 @@ struct TileState {
 
     const TileWork& work;
     Arrangement arrangement;
-    Hits& hits;  // in the arrangement's order
+    Hits& hits;  // blocks that `places` rearrange in the arrangement's order
     CoverCounts& counts;
     CellCentre centre;
     SlotStrata slot_strata;
@@ -164,8 +164,8 @@ struct TileState {
     float block_size, per_block, middle;             // pixels a side, one over it, the cell's middle in blocks
     HWY_ALIGN float column_of_block[kBlocksPerCell], row_of_block[kBlocksPerCell];
     int blocks_a_side;
-    std::uint32_t samples_per_block;         // in Hits
-    std::span<const std::uint16_t> indices;  // of samples in their pixels, in the order of Hits
+    std::uint32_t samples_per_block;         // in SampleTable
+    std::span<const std::uint16_t> indices;  // of samples in their pixels, in the order of SampleTable::cell()
 
     // Corner of a block, pixels from the middle of the cell, y up.
     float left_of(int block) const { return block_size * column_of_block[block] - 0.5f * kCellSize; }
@@ -175,11 +175,17 @@ struct TileState {
     Job job(int slot, int block) const {
         return static_cast<Job>((slot * blocks_a_side + block / kCellBlocks) * blocks_a_side + block % kCellBlocks);
     }
-    // The vector of a job in the arrangement and, times kLanes, in Hits. `kFine`: of one whose `places` are not empty.
+    // The vector of a job in the arrangement. `kFine`: of one whose `places` are not empty.
     template <bool kFine>
     HWY_INLINE std::size_t place(Job job) const {
         if constexpr (kFine) return job;
         return (job % kBlocksPerCell) * static_cast<std::size_t>(arrangement.slots) + job / kBlocksPerCell;
+    }
+    // Its first entry in Hits. Rearranged tiles are whole cells.
+    template <bool kFine>
+    HWY_INLINE std::size_t entry(Job job) const {
+        if constexpr (kFine) return std::size_t{job} * kLanes;
+        return hits.first(static_cast<int>(job % kBlocksPerCell)) + std::size_t{job / kBlocksPerCell} * kLanes;
     }
     int slots() const { return arrangement.slots; }
 };

@@ -17,8 +17,7 @@ bool in_front(const Fragment& a, const Fragment& b) {
 
 }  // namespace
 
-void Layers::reset(int slots) {
-    const std::size_t samples = static_cast<std::size_t>(kBlocksPerCell) * slots * kLanes;
+void Layers::reset(std::size_t samples) {
     most_ = wanted_ > 0 ? static_cast<std::size_t>(wanted_)
                         : std::clamp(kMostBytes / (samples * sizeof(Fragment)), std::size_t{1}, kMost);
     fragments_.resize(samples * most_);

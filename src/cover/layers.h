@@ -26,13 +26,13 @@ class Layers {
     /// `most`: fragments of a sample in one pass, at least 1. By default 8, less where that would take over 64 MB.
     explicit Layers(int most = 0) : wanted_(most) {}
 
-    /// Forgets everything; for samples with that many slots.
-    void reset(int slots);
+    /// Forgets everything; for that many samples.
+    void reset(std::size_t samples);
 
     /// Before another pass: lists go on behind their last fragment. False: nothing was left out.
     bool next_pass();
 
-    /// Of a sample (its place in Hits), nearest first. Samples outside the tile have none.
+    /// Of a sample (its entry in Hits), nearest first. Samples outside the tile have none.
     std::span<const Fragment> fragments(std::size_t sample) const {
         return {&fragments_[sample * most_], count_[sample]};
     }

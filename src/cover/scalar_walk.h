@@ -192,8 +192,9 @@ class ScalarWalk {
         if (work_.map != nullptr) record(*work_.map, px, py, hit.hit);
         if (!hit.hit) return;
         ++counts_.covered;
-        if (found_(triangle_, hit, SamplePlace{job * kLanes + lane, px, py, slot, lane}))
-            changed_ |= std::uint64_t{1} << (job / slots_);
+        const int block = y / kBlockSize * kCellBlocks + x / kBlockSize;
+        const std::size_t entry = shown_.first(block) + static_cast<std::size_t>(slot) * kLanes + lane;
+        if (found_(triangle_, hit, SamplePlace{entry, px, py, slot, lane})) changed_ |= std::uint64_t{1} << block;
     }
 
     // Of the blocks that show something else than at the last call.
@@ -210,10 +211,11 @@ class ScalarWalk {
         for (int lane = 0; lane < kLanes; ++lane) {
             const int px = x + lane % kBlockSize, py = y + lane / kBlockSize;
             if (px < tile.x0 || px >= tile.x1 || py < tile.y0 || py >= tile.y1) continue;
+            if (!tile.wants(px / kBlockSize, py / kBlockSize)) continue;
             for (int slot = 0; slot < slots_; ++slot) {
                 const std::size_t job = static_cast<std::size_t>(block) * slots_ + slot;
                 float& depth = farthest[Occluders::time_of(vectors_[job].t[lane])];
-                depth = std::max(depth, shown_.depth[job * kLanes + lane]);
+                depth = std::max(depth, shown_.depth[shown_.entry(px, py, slot)]);
             }
         }
         for (int time = 0; time < Occluders::kTimes; ++time)

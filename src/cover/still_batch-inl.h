@@ -153,10 +153,10 @@ constexpr std::uint32_t pixel_job(int k, int pixel) {
     return static_cast<std::uint32_t>(k << 16 | pixel);
 }
 
-// Writes the pixels of triangle k that lie within its half-planes and rectangle and show something no nearer than it;
-// `farthest`: by pixel. Returns how many; writes up to sixteen more.
-HWY_INLINE std::size_t list_pixels(const StillBatch& batch, int k, const CellRect& rect, const float* farthest,
-                                   std::uint32_t* HWY_RESTRICT jobs) {
+// Writes the pixels of triangle k that lie within its half-planes and rectangle, in one of `blocks`, and show something
+// no nearer than it; `farthest`: by pixel. Returns how many; writes up to sixteen more.
+HWY_INLINE std::size_t list_pixels(const StillBatch& batch, int k, const CellRect& rect, std::uint64_t blocks,
+                                   const float* farthest, std::uint32_t* HWY_RESTRICT jobs) {
     const F f;
     const I i32;
     const Vec nearest = hn::Set(f, batch.nearest[k]);
@@ -169,7 +169,8 @@ HWY_INLINE std::size_t list_pixels(const StillBatch& batch, int k, const CellRec
     std::size_t count = 0;
     for (int row = rect.y0 & -kBlockSize; row < rect.y1; row += kBlockSize)
         for (int column = rect.x0 & -kBlockSize; column < rect.x1; column += kBlockSize) {
-            const int first = (row / kBlockSize * kCellBlocks + column / kBlockSize) * kLanes;
+            const int block = row / kBlockSize * kCellBlocks + column / kBlockSize, first = block * kLanes;
+            if ((blocks >> block & 1u) == 0) continue;
             std::uint32_t kept = lanes_in(rect, column, row);
             for (int lane = 0; lane < kLanes; lane += kWidth) {
                 const auto lanes = hn::Iota(i32, lane);

@@ -26,8 +26,11 @@ struct StillTile {
           centre(cell_centre(w.frame.view, w.tile.cell_x(), w.tile.cell_y())),
           spp(static_cast<std::size_t>(w.samples.spp())),
           depth(hits.depth.data()),
-          triangle(hits.triangle.data()) {
+          triangle(hits.triangle.data()),
+          blocks(w.tile.wanted_blocks()) {
         std::fill_n(farthest, kPixels, INFINITY);
+        for (int block = 0; block < kBlocksPerCell; ++block)
+            if ((blocks >> block & 1u) != 0) skipped[block] = block * kLanes * spp - hits.first(block);
     }
 
     static constexpr int kPixels = kBlocksPerCell * kLanes;
@@ -37,6 +40,9 @@ struct StillTile {
     std::size_t spp;
     float* depth;  // of the tile's Hits; -infinity outside the tile: nothing is nearer
     std::uint32_t* triangle;
+    std::uint64_t blocks;                      // of the cell, those in Hits
+    std::size_t skipped[kBlocksPerCell] = {};  // samples before the block's that are not in Hits
+    std::size_t entry(std::size_t at, std::size_t pixel) const { return at - skipped[pixel / kLanes]; }
     HWY_ALIGN float farthest[kPixels];  // by pixel: largest depth stored so far
     float tile_farthest = INFINITY;     // no smaller than any of `farthest`
     std::int64_t tested = 0, covered = 0;
@@ -87,9 +93,9 @@ HWY_NOINLINE inline Mask decide_alpha(F f, const StillTile& tile, const SpecialT
     return decide_opacity(f, tile.work, special.T.triangle, special.terms, e, sum, hit, lanes);
 }
 
-// Samples [at, at + kWidth) of a pixel. `special`: of a triangle that is not, unused.
+// Samples [at, at + kWidth) of a pixel, from `entry` on in Hits. `special`: of a triangle that is not, unused.
 template <bool kSpecial>
-HWY_INLINE void cover_lanes(F f, StillTile& tile, const StillBatch& batch, int k, std::size_t at,
+HWY_INLINE void cover_lanes(F f, StillTile& tile, const StillBatch& batch, int k, std::size_t at, std::size_t entry,
                             const SpecialTriangle* special) {
     const U u;
     const Vec hx = hn::Load(f, &tile.samples.x[at]), hy = hn::Load(f, &tile.samples.y[at]), zero = hn::Zero(f);
@@ -111,8 +117,8 @@ HWY_INLINE void cover_lanes(F f, StillTile& tile, const StillBatch& batch, int k
         hit = hn::Or(hit, settle_ties(f, tile, *batch.binned[k], at, tied, depth));
     tile.covered += static_cast<std::int64_t>(hn::CountTrue(f, hit));
 
-    const Vec stored = hn::Load(f, &tile.depth[at]);
-    const auto triangle = hn::Set(u, batch.triangle[k]), stored_triangle = hn::Load(u, &tile.triangle[at]);
+    const Vec stored = hn::Load(f, &tile.depth[entry]);
+    const auto triangle = hn::Set(u, batch.triangle[k]), stored_triangle = hn::Load(u, &tile.triangle[entry]);
     const Mask equal = hn::And(hit, hn::Eq(depth, stored));
     hit = hn::And(hit, hn::Lt(depth, stored));
     if (HWY_UNLIKELY(!hn::AllFalse(f, equal))) {
@@ -121,8 +127,8 @@ HWY_INLINE void cover_lanes(F f, StillTile& tile, const StillBatch& batch, int k
     }
     if constexpr (kSpecial)
         if (special->T.alpha_tested && !hn::AllFalse(f, hit)) hit = decide_alpha(f, tile, *special, E.e, sum, at, hit);
-    hn::Store(hn::IfThenElse(hit, depth, stored), f, &tile.depth[at]);
-    hn::Store(hn::IfThenElse(hn::RebindMask(u, hit), triangle, stored_triangle), u, &tile.triangle[at]);
+    hn::Store(hn::IfThenElse(hit, depth, stored), f, &tile.depth[entry]);
+    hn::Store(hn::IfThenElse(hn::RebindMask(u, hit), triangle, stored_triangle), u, &tile.triangle[entry]);
 }
 
 // The exact test of all jobs, then what is farthest in their pixels: apart from the test, whose chain of operations is
@@ -133,21 +139,21 @@ void cover_pixels(StillTile& tile, const StillBatch& batch, const std::uint32_t*
     const F f;
     constexpr std::size_t kAhead = 6;  // jobs whose samples and hits are fetched from the second-level cache meanwhile
     for (std::size_t j = 0; j < count; ++j) {
-        const std::size_t later = (jobs[std::min(j + kAhead, count - 1)] & 0xffff) * tile.spp;
-        hwy::Prefetch(&tile.samples.x[later]);
-        hwy::Prefetch(&tile.samples.y[later]);
-        hwy::Prefetch(&tile.depth[later]);
-        hwy::Prefetch(&tile.triangle[later]);
+        const std::size_t later = jobs[std::min(j + kAhead, count - 1)] & 0xffff, ahead = later * tile.spp;
+        hwy::Prefetch(&tile.samples.x[ahead]);
+        hwy::Prefetch(&tile.samples.y[ahead]);
+        hwy::Prefetch(&tile.depth[tile.entry(ahead, later)]);
+        hwy::Prefetch(&tile.triangle[tile.entry(ahead, later)]);
         const int k = static_cast<int>(jobs[j] >> 16);
-        const std::size_t pixel = jobs[j] & 0xffff;
-        for (std::size_t at = pixel * tile.spp; at < (pixel + 1) * tile.spp; at += kWidth)
-            cover_lanes<kSpecial>(f, tile, batch, k, at, special);
+        const std::size_t pixel = jobs[j] & 0xffff, first = pixel * tile.spp, entry = tile.entry(first, pixel);
+        for (std::size_t i = 0; i < tile.spp; i += kWidth)
+            cover_lanes<kSpecial>(f, tile, batch, k, first + i, entry + i, special);
     }
     for (std::size_t j = 0; j < count; ++j) {
         const std::size_t pixel = jobs[j] & 0xffff;
-        Vec farthest = hn::Load(f, &tile.depth[pixel * tile.spp]);
-        for (std::size_t at = pixel * tile.spp + kWidth; at < (pixel + 1) * tile.spp; at += kWidth)
-            farthest = hn::Max(farthest, hn::Load(f, &tile.depth[at]));
+        const float* depths = &tile.depth[tile.entry(pixel * tile.spp, pixel)];
+        Vec farthest = hn::Load(f, depths);
+        for (std::size_t i = kWidth; i < tile.spp; i += kWidth) farthest = hn::Max(farthest, hn::Load(f, depths + i));
         tile.farthest[pixel] = hn::GetLane(hn::MaxOfLanes(f, farthest));
     }
     tile.tested += static_cast<std::int64_t>(count * tile.spp);

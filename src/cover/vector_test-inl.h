@@ -228,8 +228,9 @@ void write_hits(TileState& state, const LocalTriangle& T, std::size_t count) {
         const Job job = state.jobs[j];
         const std::size_t place = state.place<K::kFine>(job);
         const SampleVector& s = samples[place];
-        float* depths = &state.hits.depth[place * kLanes];
-        std::uint32_t* triangles = &state.hits.triangle[place * kLanes];
+        const std::size_t entry = state.entry<K::kFine>(job);
+        float* depths = &state.hits.depth[entry];
+        std::uint32_t* triangles = &state.hits.triangle[entry];
         Vec farthest = zero;
         for (int lane = 0; lane < kLanes; lane += kWidth) {
             const Deltas D = deltas<K>(f, T, s, lane);

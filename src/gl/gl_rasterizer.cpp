@@ -127,8 +127,8 @@ void GlRasterizer::cover(const Tile& tile, Hits& hits, CoverCounts& counts, Cove
         for (int px = std::max(tile.x0, limits_.x0); px < tile.x1; ++px) {
             const int block = py % kCellSize / kBlockSize * kCellBlocks + px % kCellSize / kBlockSize;
             const std::size_t lane = py % kBlockSize * kBlockSize + px % kBlockSize;
-            const std::size_t to = static_cast<std::size_t>(block) * slots * kLanes + lane,
-                              from = cell * kBlocksPerCell * slots * kLanes + to;
+            const std::size_t from = ((cell * kBlocksPerCell + block) * slots) * kLanes + lane,
+                              to = hits.first(block) + lane;
             for (std::size_t s = 0; s < static_cast<std::size_t>(slots) * kLanes; s += kLanes) {
                 hits.depth[to + s] = found->depth[from + s];
                 hits.triangle[to + s] = found->triangle[from + s];
@@ -144,7 +144,7 @@ void GlRasterizer::cover(const Tile& tile, Hits& hits, CoverCounts& counts, Cove
         }
 }
 
-std::int64_t GlRasterizer::shade(const Tile& tile, TileShade& out) const {
+std::int64_t GlRasterizer::shade(const Tile& tile, const Hits& hits, TileShade& out) const {
     const Region region = region_of(tile.cell_x(), tile.cell_y());
     const std::shared_ptr<const Rendered> rendered = shaded(region, tile);
     const RegionShade& shade = *rendered->shade;
@@ -152,17 +152,18 @@ std::int64_t GlRasterizer::shade(const Tile& tile, TileShade& out) const {
     const std::size_t first = (static_cast<std::size_t>(tile.cell_y() - region.cell_y) * region.cell_columns +
                                (tile.cell_x() - region.cell_x)) *
                               kBlocksPerCell * of_block;
-    out.point_of_sample.assign(kBlocksPerCell * of_block, kBackground);
+    out.point_of_sample.assign(hits.triangle.size(), kBackground);
     out.colors.clear();
     std::int64_t points = 0;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> known;  // of a pixel: colours there, and here
     for (int py = std::max(tile.y0, limits_.y0); py < tile.y1; ++py)
         for (int px = std::max(tile.x0, limits_.x0); px < tile.x1; ++px) {
             const int block = py % kCellSize / kBlockSize * kCellBlocks + px % kCellSize / kBlockSize;
-            const std::size_t begin = block * of_block + py % kBlockSize * kBlockSize + px % kBlockSize;
+            const std::size_t begin = first + block * of_block + py % kBlockSize * kBlockSize + px % kBlockSize;
+            const std::size_t entry = hits.entry(px, py, 0);
             known.clear();
             for (std::size_t at = begin; at < begin + of_block; at += kLanes) {
-                const std::uint32_t there = shade.color_of_sample[first + at];
+                const std::uint32_t there = shade.color_of_sample[at];
                 if (there == kBackground) continue;
                 const auto same = [&](const auto& pair) { return pair.first == there; };
                 auto found = std::find_if(known.rbegin(), known.rend(), same);
@@ -173,7 +174,7 @@ std::int64_t GlRasterizer::shade(const Tile& tile, TileShade& out) const {
                     out.colors.push_back(shade.colors[there]);
                     found = known.rbegin();
                 }
-                out.point_of_sample[at] = found->second;
+                out.point_of_sample[entry + (at - begin)] = found->second;
             }
         }
     return points;

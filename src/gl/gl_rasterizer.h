@@ -19,7 +19,7 @@ class GlRasterizer : public Rasterizer {
     ~GlRasterizer() override;
     void cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map) const override;
     void shade_with(const ShadingScene& scene) override;
-    std::int64_t shade(const Tile& tile, TileShade& out) const override;
+    std::int64_t shade(const Tile& tile, const Hits& hits, TileShade& out) const override;
     const char* pipeline() const override;
 
   private:

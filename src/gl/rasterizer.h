@@ -27,7 +27,7 @@ class Rasterizer {
     virtual void shade_with(const ShadingScene& scene) = 0;
 
     /// As TileShader::shade(), of a tile that was covered, once; what misses show is left to others. Thread-safe.
-    virtual std::int64_t shade(const Tile& tile, TileShade& out) const = 0;
+    virtual std::int64_t shade(const Tile& tile, const Hits& hits, TileShade& out) const = 0;
 
     /// GlPipeline that does it: geometry or compute.
     virtual const char* pipeline() const = 0;

@@ -83,16 +83,12 @@ double place_of(const Tile& tile, int size) {
     return place - std::floor(place);
 }
 
-// body(px, py, place in Hits) for the samples of a tile.
+// body(px, py, entry in Hits) for the samples of a tile.
 template <class Body>
-void for_each_sample(const Tile& tile, int slots, const Body& body) {
+void for_each_sample(const Tile& tile, const Hits& hits, int slots, const Body& body) {
     for (int py = tile.y0; py < tile.y1; ++py)
-        for (int px = tile.x0; px < tile.x1; ++px) {
-            const int block = py % kCellSize / kBlockSize * kCellBlocks + px % kCellSize / kBlockSize;
-            const int lane = py % kBlockSize * kBlockSize + px % kBlockSize;
-            for (int slot = 0; slot < slots; ++slot)
-                body(px, py, (static_cast<std::size_t>(block) * slots + slot) * kLanes + lane);
-        }
+        for (int px = tile.x0; px < tile.x1; ++px)
+            for (int slot = 0; slot < slots; ++slot) body(px, py, hits.entry(px, py, slot));
 }
 
 bool differ(const Hits& a, const Hits& b, std::size_t s, bool depths) {
@@ -231,7 +227,7 @@ FrameWalk::Counts FrameWalk::count(const std::string& method, MethodMap* map) {
         CoverCounts counts;
         visibility.cover(tiles_[i], hits, counts, map != nullptr ? &map->cover : nullptr);
         std::int64_t lost = 0;
-        for_each_sample(tiles_[i], slots, [&](int px, int py, std::size_t s) {
+        for_each_sample(tiles_[i], hits, slots, [&](int px, int py, std::size_t s) {
             if (!differ(hits, reference_[i], s, depths)) return;
             ++lost;
             if (map != nullptr) ++map->lost[static_cast<std::size_t>(py) * view.width + px];
@@ -274,7 +270,7 @@ FrameWalk::Timed FrameWalk::time_setup(const std::string& method) {
     const Culling culling = refusing(parse_culling(settings.culling));
     timed.ms += for_each_tile(method + ": timing its questions", [&](std::size_t i, Hits& hits) {
         const Tile& tile = tiles_[i];
-        hits.reset(samples_.slots());
+        hits.reset(samples_.slots(), tile);
         CoverCounts counts;
         cover_with_test({frame_, samples_, bins.triangles(), bins.tile(tile.x0, tile.y0), tile, nullptr}, culling, hits,
                         counts);
@@ -294,7 +290,7 @@ BenchCell FrameWalk::describe() {
         const auto hits = buffers_.lease();
         CoverCounts counts;
         visibility.cover(all[i], *hits, counts);
-        for_each_sample(all[i], samples_.slots(), [&](int px, int py, std::size_t s) {
+        for_each_sample(all[i], *hits, samples_.slots(), [&](int px, int py, std::size_t s) {
             if ((px + py) % 4 != 0) return;  // a quarter of the pixels says as much
             ++sums[i].samples;
             const std::uint32_t triangle = hits->triangle[s];

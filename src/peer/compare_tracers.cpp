@@ -72,12 +72,11 @@ class TileComparison {
                        TileFindings& findings) const {
         const int spp = table_.spp(), slots = table_.slots();
         const std::span<const std::uint16_t> indices = table_.indices(bx, by);
-        const std::size_t block = kCellBlocks * static_cast<std::size_t>(by % kCellBlocks) + bx % kCellBlocks;
         for (int slot = 0; slot < slots; ++slot) {
             for (int lane = 0; lane < kLanes; ++lane) {
                 const int px = bx * kBlockSize + lane % kBlockSize, py = by * kBlockSize + lane / kBlockSize;
                 if (px >= tile.x1 || py >= tile.y1) continue;
-                const std::size_t i = (block * slots + slot) * kLanes + lane;
+                const std::size_t i = ours.entry(px, py, slot);
                 const Claim claim{px, py, indices[static_cast<std::size_t>(slot) * kLanes + lane], ours.triangle[i],
                                   ours.depth[i]};
                 const std::uint64_t pixel = static_cast<std::uint64_t>(py) * frame_.view.width + px;
@@ -174,10 +173,10 @@ VerifyReport compare_tracers(const Frame& frame, const SampleTable& table, const
     parallel_for(tiles.size(), [&](std::size_t i) {
         if (stopped) return;
         Hits mine, theirs;
-        mine.reset(table.slots());
+        mine.reset(table.slots(), tiles[i]);
         ours(tiles[i], mine);
         if (reference) {
-            theirs.reset(table.slots());
+            theirs.reset(table.slots(), tiles[i]);
             reference(tiles[i], theirs);
         }
         findings[i] = comparison.run(tiles[i], mine, theirs);

@@ -159,7 +159,7 @@ class Contest {
         for (std::size_t i = every_tile / 2; i < tiles_.size(); i += every_tile) tiles.push_back(tiles_[i]);
         const double ms = milliseconds([&] {
             trace_picture(tiles, [&](const Tile& tile, Hits& hits) {
-                hits.reset(picture_.samples.slots());
+                hits.reset(picture_.samples.slots(), tile);
                 embree.trace(tile, hits);
             });
         });

@@ -201,7 +201,7 @@ void FrameTiles::cover_and_shade(const Tile& tile, const SampleTable& samples, W
 
 std::int64_t FrameTiles::shade(const Tile& tile, const SampleTable& samples, Worker& worker, bool roughly) const {
     if (!device_shades_) return worker.shader.shade(*shading_, samples, tile, worker.hits, worker.shade, roughly);
-    const std::int64_t points = visibility_->shade(tile, worker.shade);
+    const std::int64_t points = visibility_->shade(tile, worker.hits, worker.shade);
     worker.shader.shade_misses(*shading_, samples, tile, worker.hits, worker.shade);
     return points;
 }
@@ -247,7 +247,7 @@ std::vector<Tile> FrameTiles::tiles_to_decide(std::span<const Tile> tiles) const
 
 void FrameTiles::decide(const Tile& tile, Worker& worker) {
     cover_and_shade(tile, *samples_, worker, true);
-    budget_->note(tile, *samples_, worker.shade);
+    budget_->note(tile, *samples_, worker.hits, worker.shade);
     costs_.pilot_samples += std::int64_t{delivered_pixels(tile)} * samples_->spp();
 }
 

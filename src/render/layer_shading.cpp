@@ -8,9 +8,9 @@ std::int64_t LayerShader::shade(const Visibility& visibility, const ShadingScene
     visibility.cover_solid(tile, samples, hits, counts);
     solid_ = hits;
     seen_.assign(hits.triangle.size(), Seen{});
-    half_.reset(samples.slots());
+    half_.reset(samples.slots(), tile);
     count_ = 0;
-    layers_.reset(samples.slots());
+    layers_.reset(hits.triangle.size());
     do {
         visibility.cover_layers(tile, samples, solid_, layers_, counts);
         blend_pass(scene, samples, tile);
@@ -28,7 +28,7 @@ std::int64_t LayerShader::shade(const Visibility& visibility, const ShadingScene
 // The layers of one pass: the nearest of all samples, then the next.
 void LayerShader::blend_pass(const ShadingScene& scene, const SampleTable& samples, const Tile& tile) {
     for (int layer = 0;; ++layer) {
-        layer_.reset(samples.slots());
+        layer_.reset(samples.slots(), tile);
         bool any = false;
         const auto fragment_of = [&](std::size_t sample) -> const Fragment* {
             const std::span<const Fragment> fragments = layers_.fragments(sample);

@@ -1,6 +1,7 @@
 #include "render/picture_rows.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace pentaprism {
 namespace {
@@ -31,6 +32,7 @@ PictureRows::PictureRows(const FrameInfo& info, int reach, double exposure, RowS
     : part_(delivered_part(info)),
       band_rows_(band_rows(part_)),
       film_({part_.x0, part_.y0, part_.x1, part_.y1, band_rows_, reach, exposure}),
+      has_aovs_(!info.aovs.empty()),
       aovs_(channel_count(info.aovs), part_.x0, part_.x1, band_rows_ + 2 * reach + 1),
       sink_(sink) {
     sink_.begin(info);
@@ -53,11 +55,16 @@ void PictureRows::add(const TileSums& tile) {
     aovs_.add(tile, part_.y0, part_.y1);
 }
 
+// In pieces, so that what is made of the film does not take as much memory again. With output variables all at once: a
+// file holds them in the order in which they come.
 void PictureRows::deliver(int rendered_to, bool last) {
-    PixelRows rows = film_.take_rows(rendered_to, last);
-    if (rows.count == 0) return;
-    rows.aovs = aovs_.rows(rows.y0, rows.count);
-    sink_.rows(rows);
+    constexpr int kPiece = 256;
+    for (;;) {
+        PixelRows rows = film_.take_rows(rendered_to, last, has_aovs_ ? std::numeric_limits<int>::max() : kPiece);
+        if (rows.count == 0) return;
+        rows.aovs = aovs_.rows(rows.y0, rows.count);
+        sink_.rows(rows);
+    }
 }
 
 }  // namespace pentaprism

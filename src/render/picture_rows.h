@@ -30,6 +30,7 @@ class PictureRows {
     PixelRect part_;
     int band_rows_;
     Film film_;
+    bool has_aovs_;
     AovFilm aovs_;
     RowSink& sink_;
 };

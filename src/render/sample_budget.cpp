@@ -68,13 +68,13 @@ std::vector<Tile> SampleBudget::tiles_to_know(std::span<const Tile> tiles, std::
     return out;
 }
 
-void SampleBudget::note(const Tile& tile, const SampleTable& pilot, const TileShade& shade) {
+void SampleBudget::note(const Tile& tile, const SampleTable& pilot, const Hits& hits, const TileShade& shade) {
     points_[cell_index(tile.cell_x(), tile.cell_y())] = static_cast<int>(shade.colors.size());
     for (int by = tile.y0 / kBlockSize; by * kBlockSize < tile.y1; ++by)
         for (int bx = tile.x0 / kBlockSize; bx * kBlockSize < tile.x1; ++bx)
             if (tile.wants(bx, by))
                 errors_[static_cast<std::size_t>(by) * columns_ + bx] =
-                    static_cast<float>(error_of_block(bx, by, tile, pilot, shade));
+                    static_cast<float>(error_of_block(bx, by, tile, pilot, hits, shade));
 }
 
 std::vector<std::uint64_t> SampleBudget::share_out(const Tile& tile) const {
@@ -133,7 +133,7 @@ double SampleBudget::smooth_error(int bx, int by) const {
 
 // Mean variance of one sample in the block's pixels, of the root of each colour, which is about how it is displayed: to
 // first order the colour's variance over four times its mean, which is the whole block's.
-double SampleBudget::error_of_block(int bx, int by, const Tile& tile, const SampleTable& pilot,
+double SampleBudget::error_of_block(int bx, int by, const Tile& tile, const SampleTable& pilot, const Hits& hits,
                                     const TileShade& shade) const {
     SampleOrder order;
     order.read(pilot, bx, by);
@@ -144,7 +144,7 @@ double SampleBudget::error_of_block(int bx, int by, const Tile& tile, const Samp
         if (px >= tile.x1 || py >= tile.y1) continue;
         glm::dvec3 mean(0.0), off_squared(0.0);  // Welford's
         for (int index = 0; index < pilot.spp(); ++index) {
-            const std::size_t at = place_in_hits(bx, by, order.slots(lane)[index], lane, pilot.slots());
+            const std::size_t at = hits.entry(px, py, order.slots(lane)[index]);
             const std::uint32_t point = shade.point_of_sample[at];
             const glm::dvec3 color = point == kBackground ? background_ : glm::dvec3(shade.colors[point]);
             const glm::dvec3 off = color - mean;

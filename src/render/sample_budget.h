@@ -34,7 +34,7 @@ class SampleBudget {
     std::vector<Tile> tiles_to_know(std::span<const Tile> tiles, std::span<const Tile> all) const;
 
     /// Takes note of what the tile's pilot sees. Thread-safe for different tiles.
-    void note(const Tile& tile, const SampleTable& pilot, const TileShade& shade);
+    void note(const Tile& tile, const SampleTable& pilot, const Hits& hits, const TileShade& shade);
 
     /// Of each level the blocks of the tile's cell that get it, as Tile::blocks.
     std::vector<std::uint64_t> share_out(const Tile& tile) const;
@@ -47,7 +47,8 @@ class SampleBudget {
     std::size_t level_for(double squared_error) const;
 
   private:
-    double error_of_block(int bx, int by, const Tile& tile, const SampleTable& pilot, const TileShade& shade) const;
+    double error_of_block(int bx, int by, const Tile& tile, const SampleTable& pilot, const Hits& hits,
+                          const TileShade& shade) const;
     double smooth_error(int bx, int by) const;
     std::size_t cell_index(int cx, int cy) const {
         return static_cast<std::size_t>(cy) * ((columns_ + kCellBlocks - 1) / kCellBlocks) + cx;

@@ -65,7 +65,7 @@ Visibility::Visibility(const Frame& frame, const SampleTable& samples, const Met
 
 void Visibility::cover(const Tile& tile, const SampleTable& samples, Hits& hits, CoverCounts& counts,
                        CoverMap* map) const {
-    hits.reset(samples.slots(), tile.blocks);
+    hits.reset(samples.slots(), tile);
     if (tracer_) return tracer_->trace(tile, hits);
     if (rasterizer_) return rasterizer_->cover(tile, hits, counts, map);
     const TileWork work{frame_, samples, bins_->triangles(), bins_->tile(tile.x0, tile.y0), tile, map};
@@ -95,7 +95,7 @@ std::vector<std::uint32_t> Visibility::see_through(const Tile& tile, bool wanted
 
 void Visibility::cover_solid(const Tile& tile, const SampleTable& samples, Hits& hits, CoverCounts& counts) const {
     const std::vector<std::uint32_t> list = see_through(tile, false);
-    hits.reset(samples.slots(), tile.blocks);
+    hits.reset(samples.slots(), tile);
     cover_list({frame_, samples, bins_->triangles(), list, tile, nullptr}, hits, counts);
 }
 

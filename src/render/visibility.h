@@ -31,8 +31,7 @@ class Visibility {
     void cover(const Tile& tile, Hits& hits, CoverCounts& counts, CoverMap* map = nullptr) const {
         cover(tile, samples_, hits, counts, map);
     }
-    /// With other samples of make_samples() for the same method, which must be kStochastic on the processor. Blocks of
-    /// the tile that are not wanted are left as they are.
+    /// With other samples of make_samples() for the same method, which must be kStochastic on the processor.
     void cover(const Tile& tile, const SampleTable& samples, Hits& hits, CoverCounts& counts, CoverMap* map) const;
 
     /// What the samples see of all triangles that are not see-through (frame/opacity.h), and one pass over those that
@@ -43,7 +42,9 @@ class Visibility {
 
     /// Of Backend::kGl: shades on the device, too (gl/rasterizer.h).
     void shade_with(const ShadingScene& scene) { rasterizer_->shade_with(scene); }
-    std::int64_t shade(const Tile& tile, TileShade& out) const { return rasterizer_->shade(tile, out); }
+    std::int64_t shade(const Tile& tile, const Hits& hits, TileShade& out) const {
+        return rasterizer_->shade(tile, hits, out);
+    }
 
     /// 0 for a tracer and for a backend that bins on its own.
     std::int64_t binned_triangles() const { return bins_ ? static_cast<std::int64_t>(bins_->triangles().size()) : 0; }

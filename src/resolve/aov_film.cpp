@@ -37,12 +37,11 @@ void TileAovs::resolve(const SampleTable& samples, const Hits& hits, const TileS
 
 void TileAovs::resolve_pixel(const SampleTable& samples, const Hits& hits, const TileShade& shade, int px, int py,
                              Worker& worker, std::span<const SampleVector> vectors, float* out) const {
-    const int block = py % kCellSize / kBlockSize * kCellBlocks + px % kCellSize / kBlockSize;
     const int lane = py % kBlockSize * kBlockSize + px % kBlockSize;
     for (const auto& resolver : worker.resolvers) resolver->begin(px, py);
     for (int index = 0; index < samples.spp(); ++index) {
         const int slot = worker.order.slots(lane)[index];
-        const std::size_t at = (static_cast<std::size_t>(block) * samples.slots() + slot) * kLanes + lane;
+        const std::size_t at = hits.entry(px, py, slot);
         if (hits.triangle[at] == kNoTriangle) {
             for (const auto& resolver : worker.resolvers) resolver->miss(sources_.background);
             continue;

@@ -42,9 +42,9 @@ void Film::add(const TileSums& from) {
         }
 }
 
-PixelRows Film::take_rows(int rendered_to, bool last) {
-    const int end = std::clamp(last ? settings_.y1 : rendered_to - settings_.reach, next_row_, settings_.y1);
-    const int first = next_row_, count = end - first;
+PixelRows Film::take_rows(int rendered_to, bool last, int most) {
+    const int whole = std::clamp(last ? settings_.y1 : rendered_to - settings_.reach, next_row_, settings_.y1);
+    const int first = next_row_, count = std::min(whole - first, most), end = first + count;
     const std::size_t n = static_cast<std::size_t>(count) * width_;
     rgba_.resize(4 * n);
     z_.resize(n);

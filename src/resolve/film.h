@@ -7,6 +7,7 @@
 // keeps each bit.
 
 #include <cstdint>
+#include <limits>
 #include <pentaprism/render.h>
 #include <vector>
 
@@ -33,9 +34,10 @@ class Film {
     void add(const TileSums& tile);
 
     /// Rows that no tile at or below row `rendered_to` can touch any more and that were not taken yet; all that are
-    /// left once rendered_to >= y1 + reach, or >= y1 if the picture ends there: say `last`. May be none (count 0). The
-    /// spans stay valid until the next call. Call it between bands, not while tiles are added.
-    PixelRows take_rows(int rendered_to, bool last);
+    /// left once rendered_to >= y1 + reach, or >= y1 if the picture ends there: say `last`. May be none (count 0), and
+    /// no more than `most`: then call it again. The spans stay valid until the next call. Call it between bands, not
+    /// while tiles are added.
+    PixelRows take_rows(int rendered_to, bool last, int most = std::numeric_limits<int>::max());
 
   private:
     struct Pixel {

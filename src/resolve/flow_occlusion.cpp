@@ -25,15 +25,11 @@ Frame fine_instant(const Scene& scene, RenderSettings settings, double number) {
 void cover_depths(const Frame& frame, const SampleTable& samples, const Bins& bins, const Tile& tile, Hits& hits,
                   std::vector<float>& depth) {
     CoverCounts counts;
-    hits.reset(samples.slots());
+    hits.reset(samples.slots(), tile);
     cover_vectors(TileWork{frame, samples, bins.triangles(), bins.tile(tile.x0, tile.y0), tile}, hits, counts);
     for (int y = tile.y0; y < tile.y1; ++y)
-        for (int x = tile.x0; x < tile.x1; ++x) {
-            const int block = (y - tile.y0) / kBlockSize * kCellBlocks + (x - tile.x0) / kBlockSize;
-            const int lane = y % kBlockSize * kBlockSize + x % kBlockSize;
-            depth[static_cast<std::size_t>(y) * frame.view.width + x] =
-                hits.depth[static_cast<std::size_t>(block) * kLanes + lane];
-        }
+        for (int x = tile.x0; x < tile.x1; ++x)
+            depth[static_cast<std::size_t>(y) * frame.view.width + x] = hits.depth[hits.entry(x, y, 0)];
 }
 
 }  // namespace

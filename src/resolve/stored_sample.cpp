@@ -24,7 +24,7 @@ void store_samples(const Tile& tile, const SampleTable& samples, const Hits& hit
                 StoredSample* pixel = &out[(static_cast<std::size_t>(py - tile.y0) * width + (px - tile.x0)) * spp];
                 for (int index = 0; index < spp; ++index) {
                     const int slot = order.slots(lane)[index];
-                    const std::size_t at = place_in_hits(bx, by, slot, lane, samples.slots());
+                    const std::size_t at = hits.entry(px, py, slot);
                     const SampleVector& vector = vectors[slot];
                     const auto [x, y] = place_in_pixel(vector, lane);
                     const std::uint32_t point = shade.point_of_sample[at];

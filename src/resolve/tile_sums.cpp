@@ -103,7 +103,7 @@ void TileFilter::add(const SampleTable& samples, const Hits& hits, const TileSha
     for (int by = tile.y0 / kBlockSize; by * kBlockSize < tile.y1; ++by)
         for (int bx = tile.x0 / kBlockSize; bx * kBlockSize < tile.x1; ++bx) {
             if (!tile.wants(bx, by)) continue;
-            const std::size_t first = place_in_hits(bx, by, 0, 0, samples.slots());
+            const std::size_t first = hits.first(bx, by);
             filter({samples.block(bx, by).data(), &shade.point_of_sample[first], &hits.depth[first], samples.slots(),
                     shown.data(), static_cast<std::uint32_t>(background), weights_.data(), 1.0 / samples.spp()},
                    block);

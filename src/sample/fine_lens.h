@@ -31,7 +31,7 @@ class FineLens {
     /// Vectors of the cell: [slot * blocks + block], blocks row by row. Their lanes are of any pixels of the block.
     std::span<const SampleVector> cell(std::size_t cell) const;
 
-    /// Of each lane of these its entry in Hits.
+    /// Of each lane of these its place in SampleTable::cell(): vector * kLanes + lane.
     std::span<const std::uint32_t> places(std::size_t cell) const;
 
     /// As SampleTable has them; bit 8 * row + column of Stratum::blocks for blocks of either size. The same in all

@@ -139,7 +139,6 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
     const std::size_t blocks = static_cast<std::size_t>(cells) * cells * kBlocksPerCell;
     vectors_.resize(blocks * spp);
     indices_.resize(blocks * spp * kLanes);
-    slots_.resize(blocks * spp * kLanes);
     const int strata_count = sampler == Sampler::kStratified ? stratum_count(grouping, spp)
                              : grouping == Grouping::kStill  ? 1
                                                              : std::min(spp, kMaxStrata);
@@ -163,7 +162,6 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
             vector.v[lane] = sample.v;
             vector.t[lane] = sample.t;
             indices_[(b * spp + slot) * kLanes + lane] = static_cast<std::uint16_t>(index);
-            slots_[(b * kLanes + lane) * spp + index] = static_cast<std::uint16_t>(slot);
             stratum[b * spp + slot] = static_cast<std::uint8_t>(s);
             domains[b][s].extend({sample.u, sample.u, sample.v, sample.v, sample.t, sample.t});
         };
@@ -389,8 +387,12 @@ std::span<const Stratum> SampleTable::strata(int cx, int cy) const {
 }
 
 int SampleTable::slot_of(int px, int py, int index) const {
-    const int lane = py % kBlockSize * kBlockSize + px % kBlockSize;
-    return slots_[(block_index(px / kBlockSize, py / kBlockSize) * kLanes + lane) * spp_ + index];
+    const std::uint16_t* index_of =
+        &indices(px / kBlockSize, py / kBlockSize)[py % kBlockSize * kBlockSize + px % kBlockSize];
+    int slot = index;  // which it is where nothing blurs
+    if (index_of[slot * kLanes] != index)
+        for (slot = 0; index_of[slot * kLanes] != index;) ++slot;
+    return slot;
 }
 
 SamplePoint SampleTable::sample(int px, int py, int index) const {

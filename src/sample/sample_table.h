@@ -36,7 +36,7 @@ struct SharedSamples {
     int side = 0;                     ///< blocks a side of the cell: 32 / K
     std::span<const Triple> triples;  ///< by time
     /// [(triple * side + row) * side + column]: the sample in block (column, row) of the cell. x, y as in SampleVector;
-    /// place: its entry in Hits. x and y begin on a cache line.
+    /// place: vector * kLanes + lane in cell(). x and y begin on a cache line.
     std::span<const float> x, y;
     std::span<const std::uint32_t> place;
 };
@@ -77,8 +77,7 @@ class SampleTable {
     /// are addressed in the whole picture: cell (cx, cy) covers pixels [32 cx, 32 cx + 32) x ...
     std::span<const SampleVector> cell(int cx, int cy, std::vector<SampleVector>& room) const;
 
-    /// Sample index (0 .. spp - 1) of each lane of each slot of a block: at [slot * kLanes + lane]. The inverse for one
-    /// lane is slot_of().
+    /// Sample index (0 .. spp - 1) of each lane of each slot of a block: at [slot * kLanes + lane].
     std::span<const std::uint16_t> indices(int bx, int by) const;
 
     /// The same of all blocks of a cell, in the order of Hits.
@@ -87,7 +86,7 @@ class SampleTable {
     /// The sample itself, for references and replays: reads the table.
     SamplePoint sample(int px, int py, int index) const;
 
-    /// Slot that holds sample `index` of the pixel.
+    /// Slot that holds sample `index` of the pixel. Proportional to their number (SampleOrder finds those of a block).
     int slot_of(int px, int py, int index) const;
 
     /// Strata of (u, v, t): all samples of a stratum in that cell lie in domains(...)[stratum]. Without a rolling
@@ -127,7 +126,6 @@ class SampleTable {
     CatsEye eye_;
     std::vector<SampleVector> vectors_;   // [cell of the period][block][slot]
     std::vector<std::uint16_t> indices_;  // [block][slot][lane]
-    std::vector<std::uint16_t> slots_;    // [block][lane][index]
     std::vector<Domain> domains_;
     std::vector<std::vector<Stratum>> strata_;  // by cell of the period
     FineLens fine_lens_;

@@ -59,7 +59,7 @@ class SeenSamples {
     /// than 2^least_level pixels; at most 6.
     void start(const Frame& frame, const CellCentre& centre, const SampleVector* samples, int least_level = 0);
 
-    /// `indices`: of samples that hit the triangle, as in Hits. `cells`: null if no cells are wanted.
+    /// `indices`: of samples that hit the triangle, vector * kLanes + lane. `cells`: null if no cells are wanted.
     void see(std::uint32_t triangle, std::span<const std::uint32_t> indices, const CellTriangle* cells);
 
     /// Of the i-th of them. Barycentrics lie inside the triangle; of one that is seen edge-on they are its middle's.

@@ -58,24 +58,27 @@ std::uint32_t seed_of(const Tile& tile, std::uint32_t pixel, std::uint32_t salt)
     return mix(mix(static_cast<std::uint32_t>(x) + 0x9e3779b9u * salt) + static_cast<std::uint32_t>(y));
 }
 
-// Nothing is seen yet by the samples of the blocks that are wanted.
-void clear(const Tile& tile, int slots, std::vector<std::uint32_t>& points) {
-    const std::size_t per_block = static_cast<std::size_t>(slots) * kLanes, all = kBlocksPerCell * per_block;
-    if (points.size() < all) return points.assign(all, kBackground);
-    for (std::size_t block = 0; block < kBlocksPerCell; ++block)
-        if (tile.blocks >> block & 1u) std::fill_n(points.begin() + block * per_block, per_block, kBackground);
+}  // namespace
+
+void TileShader::start(const SampleTable& samples, const Hits& hits) {
+    hits_ = &hits;
+    per_block_ = static_cast<std::uint32_t>(samples.slots()) * kLanes;
+    go_to_block(0);
 }
 
-}  // namespace
+void TileShader::go_to_block(std::uint32_t block) {
+    block_begin_ = block * per_block_;
+    skipped_ = block_begin_ - hits_->first(static_cast<int>(block));
+}
 
 std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& samples, const Tile& tile,
                                const Hits& hits, TileShade& out, bool roughly) {
     scene_ = &scene;
     by_quarters_ = scene.shadows().move();
-    per_block_ = static_cast<std::uint32_t>(samples.slots()) * kLanes;
+    start(samples, hits);
     shaded_ = 0;
     waiting_.start(scene);
-    clear(tile, samples.slots(), out.point_of_sample);
+    out.point_of_sample.assign(hits.triangle.size(), kBackground);
     out.colors.clear();
     const SampleVector* vectors = samples.cell(tile.cell_x(), tile.cell_y(), room_).data();
     seen_.start(scene.frame(), cell_centre(scene.frame().view, tile.cell_x(), tile.cell_y()), vectors,
@@ -112,7 +115,7 @@ void TileShader::shade_misses(const ShadingScene& scene, const SampleTable& samp
                               TileShade& out) {
     if (!scene.has_background()) return;
     scene_ = &scene;
-    per_block_ = static_cast<std::uint32_t>(samples.slots()) * kLanes;
+    start(samples, hits);
     const SampleVector* vectors = samples.cell(tile.cell_x(), tile.cell_y(), room_).data();
     const int blocks_per_chunk = std::max(1, kSamplesPerChunk / (kLanes * samples.slots()));
     for (int block = 0; block < kBlocksPerCell; block += blocks_per_chunk) {
@@ -169,7 +172,7 @@ void TileShader::shade_pixels(const Run& run, const Tile& tile, TileShade& out) 
             ++point.count;
             const int quarter = quarter_of(begin);
             point.quarter[quarter].add(b);
-            out.point_of_sample[run.places[begin]] = point.colors.at(quarter, out);
+            out.point_of_sample[entry(run.places[begin])] = point.colors.at(quarter, out);
         }
         for (int front = 0; front < 2; ++front) {
             const PointSamples& point = points[front];
@@ -198,7 +201,7 @@ void TileShader::find_cells(const Run& run, TileShade& out) {
             cells_.push_back({key, i, {}});
             cell_table_[at] = static_cast<std::uint32_t>(cells_.size());
         }
-        out.point_of_sample[run.places[i]] = cells_[cell_table_[at] - 1].colors.at(quarter_of(i), out);
+        out.point_of_sample[entry(run.places[i])] = cells_[cell_table_[at] - 1].colors.at(quarter_of(i), out);
     }
 }
 
@@ -235,7 +238,7 @@ void TileShader::shade_background(const SampleVector* samples, const Tile& tile,
             const SampleVector& s = samples[place / kLanes];
             sums[lane] += glm::vec4(
                 scene_->background(centre.x + s.x[lane], centre.y + s.y[lane], s.u[lane], s.v[lane], s.t[lane]), 1.0f);
-            out.point_of_sample[place] = points[lane];
+            out.point_of_sample[entry(place)] = points[lane];
         }
         for (int lane = 0; lane < kLanes; ++lane) {
             if (sums[lane].w == 0.0f) continue;

@@ -46,6 +46,13 @@ class TileShader {
         std::size_t first;  ///< the sample that was first to see it
         QuarterColors colors;
     };
+    void start(const SampleTable& samples, const Hits& hits);
+    /// Of a sample its entry in Hits, by its place (TileSamples). Places come block by block.
+    std::uint32_t entry(std::uint32_t place) {
+        if (place - block_begin_ >= per_block_) go_to_block(place / per_block_);
+        return place - skipped_;
+    }
+    void go_to_block(std::uint32_t block);
     std::span<const std::uint32_t> by_pixel(std::span<const std::uint32_t> places,
                                             std::span<const std::uint16_t> indices);
     void shade_pixels(const Run& run, const Tile& tile, TileShade& out);
@@ -60,8 +67,11 @@ class TileShader {
     }
 
     const ShadingScene* scene_ = nullptr;
-    bool by_quarters_ = false;     // colours change while the shutter is open
-    std::uint32_t per_block_ = 0;  // samples of a block
+    const Hits* hits_ = nullptr;
+    bool by_quarters_ = false;       // colours change while the shutter is open
+    std::uint32_t per_block_ = 0;    // samples of a block
+    std::uint32_t block_begin_ = 0;  // place of the first sample of the block in hand
+    std::uint32_t skipped_ = 0;      // samples of the cell before that block which have no entry in Hits
     WaitingPoints waiting_;
     TileSamples samples_;
     SeenSamples seen_;

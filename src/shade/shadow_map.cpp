@@ -112,21 +112,24 @@ const ShadowMap::List& ShadowMap::list(int exponent, int limit, int cx, int cy) 
     const int middle = width_ / kCellSize / 2;
     const float size = std::ldexp(static_cast<float>(kCellSize), exponent);
     const float x0 = static_cast<float>(cx - middle) * size, y1 = static_cast<float>(middle - cy) * size;
-    auto made = std::make_unique<List>();
     const std::span<const Casters::Box> boxes = casters().boxes;
+    static thread_local List taken;  // grows here; what is kept has no room to spare
     const auto take = [&](std::uint32_t i) {
         const Casters::Box& box = boxes[i];
-        if (box.x0 <= x0 + size && box.x1 >= x0 && box.y0 <= y1 && box.y1 >= y1 - size) made->push_back(i);
+        if (box.x0 <= x0 + size && box.x1 >= x0 && box.y0 <= y1 && box.y1 >= y1 - size) taken.push_back(i);
     };
     if (exponent >= root_exponent_) {  // known since casters() was asked
         const float farthest = limit < kLimits - 1 ? std::ldexp(1.0f, limit + kLeastLimit) : INFINITY;
+        taken.clear();
         for (std::uint32_t i = 0; i < boxes.size(); ++i)
             if (boxes[i].nearest <= farthest) take(i);
     } else {
         const int px = middle + ((cx - middle) >> 1), py = middle + ((cy - middle) >> 1);
-        for (const std::uint32_t i : list(exponent + 1, limit, px, py)) take(i);
+        const List& wider = list(exponent + 1, limit, px, py);
+        taken.clear();
+        for (const std::uint32_t i : wider) take(i);
     }
-    return *publish<const List>(here.list, std::move(made));
+    return *publish<const List>(here.list, std::make_unique<const List>(taken));
 }
 
 const float* ShadowMap::depths(int exponent, int limit, int cx, int cy) const {

@@ -20,9 +20,10 @@ void TileSamples::collect(const SampleTable& samples, const Tile& tile, const Hi
         if (bx * kBlockSize < tile.x0 || bx * kBlockSize >= tile.x1) continue;
         if (by * kBlockSize < tile.y0 || by * kBlockSize >= tile.y1 || !tile.wants(bx, by)) continue;
         const std::uint32_t first = static_cast<std::uint32_t>(block) * per_block;
+        const std::uint32_t* triangles = &hits.triangle[hits.first(block)];
         for (std::uint32_t begin = first; begin < first + starts; ++begin)
             for (std::uint32_t place = begin; place < first + per_block; place += starts) {
-                const std::uint32_t triangle = hits.triangle[place];
+                const std::uint32_t triangle = triangles[place - first];
                 if (triangle == kNoTriangle) {
                     misses_.push_back(place);
                     continue;

@@ -24,7 +24,7 @@ class TileSamples {
     /// Whether they come pixel by pixel in index order, as where nothing blurs: slots are indices there.
     static bool is_by_pixel(const SampleTable& samples) { return samples.grouping() == Grouping::kStill; }
 
-    /// Places in Hits of the i-th triangle's samples.
+    /// Places in SampleTable::cell(), vector * kLanes + lane, of the i-th triangle's samples.
     std::span<const std::uint32_t> places(std::size_t i) const {
         const std::uint32_t begin = i == 0 ? 0 : counts_[i - 1];
         return std::span(places_).subspan(begin, counts_[i] - begin);

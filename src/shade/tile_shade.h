@@ -13,8 +13,8 @@ namespace pentaprism {
 inline constexpr std::uint32_t kBackground = 0xffffffffu;
 
 struct TileShade {
-    std::vector<std::uint32_t> point_of_sample;  ///< arranged as Hits; kBackground where nothing is hit. Entries of
-                                                 ///< samples outside the tile have no meaning
+    std::vector<std::uint32_t> point_of_sample;  ///< by entry in Hits; kBackground where nothing is hit. Those of
+                                                 ///< pixels outside the tile have no meaning
     std::vector<glm::vec4> colors;  ///< of each point: linear colour, finite; w is 1, or 0 for what is seen
                                     ///< of the surroundings
 };

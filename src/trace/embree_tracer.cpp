@@ -384,8 +384,7 @@ class EmbreeTracer::Impl {
     void trace_block(const Tile& tile, int bx, int by, Hits& hits) const {
         static thread_local std::vector<SampleVector> room;
         Block block{cell_centre(frame_.view, bx / kCellBlocks, by / kCellBlocks), table_.block(bx, by, room), 0, {}};
-        block.first = (kCellBlocks * static_cast<std::size_t>(by % kCellBlocks) + bx % kCellBlocks) *
-                      block.vectors.size() * kLanes;
+        block.first = hits.first(bx, by);
         for (int lane = 0; lane < kLanes; ++lane) {
             const int px = bx * kBlockSize + lane % kBlockSize, py = by * kBlockSize + lane / kBlockSize;
             block.valid[lane] = px < tile.x1 && py < tile.y1 ? -1 : 0;

@@ -57,11 +57,7 @@ std::size_t expect_twins(const Frame& frame, const SampleTable& samples, int til
         for (int py = std::max(tile.y0, limits.y0); py < tile.y1; ++py)
             for (int px = std::max(tile.x0, limits.x0); px < tile.x1; ++px)
                 for (int index = 0; index < samples.spp(); ++index) {
-                    const int block = py % kCellSize / kBlockSize * kCellBlocks + px % kCellSize / kBlockSize;
-                    const int lane = py % kBlockSize * kBlockSize + px % kBlockSize;
-                    const std::size_t s =
-                        (static_cast<std::size_t>(block) * samples.slots() + samples.slot_of(px, py, index)) * kLanes +
-                        lane;
+                    const std::size_t s = expected.entry(px, py, samples.slot_of(px, py, index));
                     const bool same = actual.triangle[s] == expected.triangle[s] &&
                                       std::memcmp(&actual.depth[s], &expected.depth[s], 4) == 0;
                     if (!same && different++ == 0)

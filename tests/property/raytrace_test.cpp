@@ -83,7 +83,7 @@ Found trace_with(const PosedPicture& picture, const EmbreeOptions& options, bool
     Hits hits;
     const View& view = picture.frame.view;
     for (const Tile& tile : tiles_over({0, view.width, 0, view.height}, kCellSize)) {
-        hits.reset(picture.samples.slots());
+        hits.reset(picture.samples.slots(), tile);
         tracer.trace(tile, hits);
         found.triangles.insert(found.triangles.end(), hits.triangle.begin(), hits.triangle.end());
         found.depths.insert(found.depths.end(), hits.depth.begin(), hits.depth.end());

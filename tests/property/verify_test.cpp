@@ -16,21 +16,19 @@ namespace {
 
 using testing::RandomFrame;
 
-/// A sample of a tile and where Hits keeps it.
+/// A sample of a tile and its entry in Hits.
 struct TileSample {
     int px, py, index;
     std::size_t entry;
     LocalSample local;
 };
 
-std::vector<TileSample> samples_of(const SampleTable& table, const Tile& tile) {
+std::vector<TileSample> samples_of(const SampleTable& table, const Tile& tile, const Hits& hits) {
     std::vector<TileSample> samples;
     for (int py = tile.y0; py < tile.y1; ++py) {
         for (int px = tile.x0; px < tile.x1; ++px) {
-            const std::size_t block = kCellBlocks * (py % kCellSize / kBlockSize) + px % kCellSize / kBlockSize;
-            const std::size_t lane = kBlockSize * (py % kBlockSize) + px % kBlockSize;
             for (int index = 0; index < table.spp(); ++index) {
-                const std::size_t entry = (block * table.slots() + table.slot_of(px, py, index)) * kLanes + lane;
+                const std::size_t entry = hits.entry(px, py, table.slot_of(px, py, index));
                 samples.push_back({px, py, index, entry, local_sample(table.sample(px, py, index), px, py)});
             }
         }
@@ -42,7 +40,7 @@ std::vector<TileSample> samples_of(const SampleTable& table, const Tile& tile) {
 TileTracer scalar_tracer(const Frame& frame, const SampleTable& table) {
     return [&](const Tile& tile, Hits& hits) {
         const CellCentre centre = cell_centre(frame.view, tile.cell_x(), tile.cell_y());
-        const std::vector<TileSample> samples = samples_of(table, tile);
+        const std::vector<TileSample> samples = samples_of(table, tile, hits);
         for (std::uint32_t triangle = 0; triangle < frame.triangle_count(); ++triangle) {
             const Part& part = frame.parts[frame.part_of[triangle]];
             for (int segment = 0; segment < (part.moves ? part.segments : 1); ++segment) {
@@ -148,7 +146,7 @@ VerifyReport report_of_defect(void (*spoil)(Hits& hits, std::size_t entry)) {
     const TileTracer right = scalar_tracer(frame, table);
     const TileTracer wrong = [&](const Tile& tile, Hits& hits) {
         right(tile, hits);
-        for (const TileSample& s : samples_of(table, tile)) {
+        for (const TileSample& s : samples_of(table, tile, hits)) {
             if (s.px % 16 == 3 && s.py % 8 == 5 && s.index == 7) spoil(hits, s.entry);
         }
     };

@@ -49,10 +49,10 @@ Scene crossing_panes() {
 }
 
 // Mean of a pixel's samples.
-glm::dvec4 pixel_of(const SampleTable& samples, const TileShade& shade, int x, int y) {
+glm::dvec4 pixel_of(const SampleTable& samples, const Hits& hits, const TileShade& shade, int x, int y) {
     glm::dvec4 sum(0.0);
     for (int i = 0; i < kSpp; ++i) {
-        const std::uint32_t point = shade.point_of_sample[hit_index(x, y, samples.slot_of(x, y, i), samples.slots())];
+        const std::uint32_t point = shade.point_of_sample[hits.entry(x, y, samples.slot_of(x, y, i))];
         if (point != kBackground) sum += glm::dvec4(shade.colors[point]);
     }
     return sum / double{kSpp};
@@ -101,7 +101,8 @@ TEST_P(ABuffer, IsTheMeanOfStochasticTransparency) {
         std::array<glm::dvec4, kBlocksPerCell> of_block{};
         for (int y = tile.y0; y < tile.y1; ++y)
             for (int x = tile.x0; x < tile.x1; ++x) {
-                const glm::dvec4 pixel[2] = {pixel_of(samples, stochastic, x, y), pixel_of(samples, blended, x, y)};
+                const glm::dvec4 pixel[2] = {pixel_of(samples, hits, stochastic, x, y),
+                                             pixel_of(samples, hits, blended, x, y)};
                 of_block[(y - tile.y0) / kBlockSize * kCellBlocks + (x - tile.x0) / kBlockSize] +=
                     (pixel[0] - pixel[1]) / double{kLanes};
                 if (x > tile.x0) {

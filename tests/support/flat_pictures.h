@@ -42,11 +42,9 @@ inline std::vector<float> flat_picture(const Visibility& visibility, const Sampl
         visibility.cover(tile, samples, hits, counts, nullptr);
         for (int py = tile.y0; py < tile.y1; ++py)
             for (int px = tile.x0; px < tile.x1; ++px) {
-                const int block = py % kCellSize / kBlockSize * kCellBlocks + px % kCellSize / kBlockSize;
-                const int lane = py % kBlockSize * kBlockSize + px % kBlockSize;
                 double sum = 0.0;
                 for (int slot = 0; slot < slots; ++slot) {
-                    const std::uint32_t seen = hits.triangle[(std::size_t(block) * slots + slot) * kLanes + lane];
+                    const std::uint32_t seen = hits.triangle[hits.entry(px, py, slot)];
                     if (seen != kNoTriangle) sum += greys[seen];
                 }
                 picture[static_cast<std::size_t>(py - limits.y0) * width + (px - limits.x0)] =

@@ -44,11 +44,7 @@ inline Found find_visible(const Frame& frame, const SampleTable& table, Visibili
         for (int py = tile.y0; py < tile.y1; ++py)
             for (int px = tile.x0; px < tile.x1; ++px)
                 for (int index = 0; index < table.spp(); ++index) {
-                    const int block = py % kCellSize / kBlockSize * kCellBlocks + px % kCellSize / kBlockSize;
-                    const int lane = py % kBlockSize * kBlockSize + px % kBlockSize;
-                    const std::size_t from =
-                        (static_cast<std::size_t>(block) * table.slots() + table.slot_of(px, py, index)) * kLanes +
-                        lane;
+                    const std::size_t from = hits.entry(px, py, table.slot_of(px, py, index));
                     const std::size_t to = (static_cast<std::size_t>(py) * frame.view.width + px) * table.spp() + index;
                     found.triangles[to] = hits.triangle[from];
                     found.depths[to] = hits.depth[from];

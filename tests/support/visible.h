@@ -30,10 +30,7 @@ class Visible {
             for (int py = tile.y0; py < tile.y1; ++py)
                 for (int px = tile.x0; px < tile.x1; ++px)
                     for (int index = 0; index < spp_; ++index) {
-                        const int block = py % kCellSize / kBlockSize * kCellBlocks + px % kCellSize / kBlockSize;
-                        const int lane = py % kBlockSize * kBlockSize + px % kBlockSize;
-                        const std::size_t s =
-                            (static_cast<std::size_t>(block) * spp_ + samples.slot_of(px, py, index)) * kLanes + lane;
+                        const std::size_t s = hits.entry(px, py, samples.slot_of(px, py, index));
                         seen_[offset(px, py, index)] = {hits.triangle[s], hits.depth[s]};
                     }
         }

@@ -21,12 +21,6 @@ SampleTable table_of(int spp) {
     return SampleTable(spp, 7, Lens{}, Grouping::kStill);
 }
 
-std::size_t hit_index(int px, int py, int slot, int slots) {
-    const int block = py % kCellSize / kBlockSize * kCellBlocks + px % kCellSize / kBlockSize;
-    const int lane = py % kBlockSize * kBlockSize + px % kBlockSize;
-    return (static_cast<std::size_t>(block) * slots + slot) * kLanes + lane;
-}
-
 // Colour, or nothing, of each sample of a made-up picture.
 using Picked = std::function<std::optional<glm::vec3>(int px, int py, int index)>;
 
@@ -38,14 +32,14 @@ struct ShadedTile {
 
 ShadedTile shaded(const SampleTable& table, Tile tile, const Picked& picked) {
     ShadedTile out{tile, {}, {}};
-    out.hits.reset(table.slots());
+    out.hits.reset(table.slots(), tile);
     out.shade.point_of_sample.assign(out.hits.depth.size(), kBackground);
     for (int y = tile.y0; y < tile.y1; ++y)
         for (int x = tile.x0; x < tile.x1; ++x)
             for (int index = 0; index < table.spp(); ++index) {
                 const auto color = picked(x, y, index);
                 if (!color) continue;
-                const std::size_t at = hit_index(x, y, table.slot_of(x, y, index), table.slots());
+                const std::size_t at = out.hits.entry(x, y, table.slot_of(x, y, index));
                 out.hits.triangle[at] = 0;
                 out.hits.depth[at] = 1.0f + static_cast<float>(index);
                 out.shade.point_of_sample[at] = static_cast<std::uint32_t>(out.shade.colors.size());

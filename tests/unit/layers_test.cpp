@@ -14,7 +14,7 @@ using namespace small_scene;
 
 TEST(Layers, KeepTheNearestInOrderAndGoOnBehindThem) {
     Layers layers(2);
-    layers.reset(1);
+    layers.reset(9);
     const Fragment all[] = {{5, 1, 0.5f}, {3, 2, 0.5f}, {4, 3, 0.5f}, {3, 1, 0.5f}, {9, 0, 0.5f}};
     std::vector<std::uint32_t> order;
     int passes = 0;

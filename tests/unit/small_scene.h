@@ -64,15 +64,9 @@ inline Frame frame_of(const Scene& scene, const RenderSettings& settings) {
     return frame;
 }
 
-inline std::size_t hit_index(int px, int py, int slot, int slots) {
-    const int block = py % kCellSize / kBlockSize * kCellBlocks + px % kCellSize / kBlockSize;
-    const int lane = py % kBlockSize * kBlockSize + px % kBlockSize;
-    return (static_cast<std::size_t>(block) * slots + slot) * kLanes + lane;
-}
-
 /// Every triangle against every sample.
 inline void find_hits(const Frame& frame, const SampleTable& table, const Tile& tile, Hits& hits) {
-    hits.reset(table.slots());
+    hits.reset(table.slots(), tile);
     const CellCentre centre = cell_centre(frame.view, tile.cell_x(), tile.cell_y());
     for (std::uint32_t triangle = 0; triangle < frame.triangle_count(); ++triangle)
         for (int segment = 0; segment < frame.parts[frame.part_of[triangle]].segments; ++segment) {
@@ -82,7 +76,7 @@ inline void find_hits(const Frame& frame, const SampleTable& table, const Tile& 
                     for (int index = 0; index < table.spp(); ++index) {
                         const SampleHit hit =
                             cover_sample(local, local_sample(table.sample(x, y, index), x, y), centre);
-                        const std::size_t at = hit_index(x, y, table.slot_of(x, y, index), table.slots());
+                        const std::size_t at = hits.entry(x, y, table.slot_of(x, y, index));
                         if (!hit.hit || !(hit.depth < hits.depth[at])) continue;
                         if (!is_opaque_at(frame, triangle, hit.barycentrics, x, y, index, table)) continue;
                         hits.depth[at] = hit.depth;

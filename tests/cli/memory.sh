@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# What a frame of 1280x720 needs beside its scene, however many samples a pixel gets: bench/resources.py measures whole
+# frames, which take minutes at 4096 samples. Here a part of one, which needs the same table of samples and the same
+# rooms of two threads; of the rest of the 300 MB a whole frame's film and shadow maps have their share.
+source "$(dirname "$0")/lib.bash"
+
+size=(-r 1280x720 -q)
+succeeds render builtin:hand "${size[@]}" -s 1 --crop 640,641,360,361 --shadows off -t 1 -o one.exr --stats scene.json
+for spp in 256 4096; do
+    succeeds render builtin:hand "${size[@]}" -s $spp --crop 608,672,344,360 -t 2 -o part.exr --stats part.json
+    check "$spp samples: below 180 MB beside the scene" python3 -c '
+import json, sys
+scene, part = (json.load(open(name))["peak_mb"] for name in ("scene.json", "part.json"))
+print(f"{sys.argv[1]} samples: {part - scene:.0f} MB beside the scene")
+assert 0 < part - scene < 180' $spp
+done
+finish
