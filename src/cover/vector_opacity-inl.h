@@ -8,11 +8,13 @@
 #define PENTAPRISM_COVER_VECTOR_OPACITY_INL_H
 #endif
 
+#include <algorithm>
 #include <bit>
 
 #include "base/bytes_at-inl.h"
 #include "cover/lanes-inl.h"
 #include "frame/opacity.h"
+#include "sample/net.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace pentaprism {
@@ -123,16 +125,70 @@ HWY_INLINE Words permuted(U u, Words i, std::uint32_t n, Words seed) {
     return i;
 }
 
+HWY_INLINE Words permuted_digits(U u, Words digit, Words random) {
+    const Words g = hn::ShiftRight<16>(hn::Mul(hn::ShiftRight<16>(random), hn::Set(u, 3u)));
+    const Words at = hn::Add(hn::ShiftLeft<3>(g), hn::Add(digit, digit)), three = hn::Set(u, 3u);
+    return hn::Xor(hn::And(hn::Shr(hn::Set(u, 0x9c78e4u), at), three), hn::And(random, three));
+}
+
+// random_net() of frame/opacity.cpp.
+HWY_INLINE Words random_net(U u, Words place, int spp_bits, int bits, Words seed) {
+    Words result = hn::Zero(u);
+    for (int done = 0; done < bits;) {
+        const int width = done + 1 == spp_bits || done + 1 == bits ? 1 : 2;
+        const Words digit = hn::ShiftRightSame(place, done), before = hn::ShiftRightSame(digit, width);
+        const Words known = hn::Or(hn::ShiftLeftSame(before, done), result);
+        const Words random =
+            mixed_bits(u, hn::Add(hn::Add(seed, hn::Set(u, static_cast<std::uint32_t>(done) << 16)), known));
+        result = width == 2
+                     ? hn::Or(hn::ShiftLeft<2>(result), permuted_digits(u, hn::And(digit, hn::Set(u, 3u)), random))
+                     : hn::Or(hn::ShiftLeft<1>(result), hn::And(hn::Xor(digit, random), hn::Set(u, 1u)));
+        done += width;
+    }
+    return result;
+}
+
+// As frame/opacity.cpp has it: the b << i of bits of a that are set.
+HWY_INLINE Words product16(U u, Words a, Words b) {
+    const Words zero = hn::Zero(u);
+    Words sum = zero;
+    for (int i = 0; i < 4; ++i) {
+        const Words bit = hn::And(a, hn::Set(u, 1u << i));
+        sum = hn::Xor(sum, hn::IfThenZeroElse(hn::Eq(bit, zero), hn::ShiftLeftSame(b, i)));
+    }
+    const Words over = hn::ShiftRight<4>(sum);
+    return hn::Xor(hn::And(sum, hn::Set(u, 15u)), hn::Xor(over, hn::ShiftLeft<1>(over)));
+}
+
+// threshold_over_time() of frame/opacity.cpp.
+HWY_INLINE Vec thresholds_over_time(F f, std::uint32_t surface, Words px, Words py, Words index, int spp) {
+    const U u;
+    const int spp_bits = std::bit_width(static_cast<unsigned>(spp) - 1u), bits = std::max(spp_bits, 4);
+    const Words column = mixed_bits(u, hn::ShiftRight<2>(px));
+    const Words row = mixed_bits(u, hn::Add(column, hn::ShiftRight<2>(py)));
+    const Words block = mixed_bits(u, hn::Add(row, hn::Set(u, surface)));
+    const Words one = hn::Set(u, 1u), two = hn::Set(u, 2u);
+    const Words low = hn::Or(hn::And(px, one), hn::ShiftLeft<1>(hn::And(py, one)));
+    const Words lane = hn::Or(low, hn::Or(hn::ShiftLeft<1>(hn::And(px, two)), hn::ShiftLeft<2>(hn::And(py, two))));
+    const Words factor = hn::Add(one, hn::ShiftRight<16>(hn::Mul(hn::ShiftRight<16>(block), hn::Set(u, 15u))));
+    const Words place = hn::Xor(index, product16(u, factor, lane));
+    const Words stratum = random_net(u, place, spp_bits, bits, block);
+    const Words number = hn::Add(one, hn::Or(hn::ShiftLeft<4>(index), lane));
+    const Words random = mixed_bits(u, hn::Add(block, hn::Mul(number, hn::Set(u, 0x9e3779b9u))));
+    const Words sum = hn::Or(hn::ShiftLeftSame(stratum, 32 - bits), hn::ShiftRightSame(random, bits));
+    return hn::Mul(hn::ConvertTo(f, hn::BitCast(I(), hn::ShiftRight<8>(sum))), hn::Set(f, 0x1p-24f));
+}
+
 // opacity_threshold() of frame/opacity.h in lanes.
 HWY_INLINE Vec opacity_thresholds(F f, std::uint32_t triangle, Words px, Words py, Words index,
                                   const OpacityPattern& pattern) {
     const U u;
+    const std::uint32_t surface = mix(triangle + 0x9e3779b9u) + mix(pattern.seed);
+    if (pattern.over_time) return thresholds_over_time(f, surface, px, py, index, pattern.spp);
     const auto to_float = [&](Words x) HWY_ATTR { return hn::ConvertTo(f, hn::BitCast(I(), x)); };
     const Words pixel = mixed_bits(u, hn::Add(mixed_bits(u, px), py));
     const auto spp = static_cast<std::uint32_t>(pattern.spp);
-    const Words salt =
-        hn::Add(mixed_bits(u, hn::Set(u, triangle + 0x9e3779b9u)), mixed_bits(u, hn::Set(u, pattern.seed)));
-    const Words seed = mixed_bits(u, hn::Add(pixel, salt));
+    const Words seed = mixed_bits(u, hn::Add(pixel, hn::Set(u, surface)));
     const Words random = mixed_bits(u, hn::Add(seed, hn::Add(index, hn::Set(u, 1u))));
     const Vec offset = hn::Mul(to_float(hn::ShiftRight<8>(random)), hn::Set(f, 0x1p-24f));
     const Vec place = hn::Add(to_float(permuted(u, index, spp, seed)), offset);

@@ -30,6 +30,51 @@ std::uint32_t permuted(std::uint32_t i, std::uint32_t n, std::uint32_t seed) {
     return i;
 }
 
+// g * digit + c in the field of four elements, g (not 0) and c by chance: of these twelve permutations of a base-4
+// digit each pair of digits becomes each other pair equally often.
+std::uint32_t permuted_digit(std::uint32_t digit, std::uint32_t random) {
+    constexpr std::uint32_t kProducts = 0x9c78e4;  // two bits for each, [g - 1][digit]
+    const std::uint32_t g = ((random >> 16) * 3u) >> 16;
+    return ((kProducts >> (8u * g + 2u * digit)) & 3u) ^ (random & 3u);
+}
+
+// Digits of `place` from the last to the first become those of the result from the first to the last, each permuted by
+// chance, which depends on the digits of `place` before it and on those of the result before it: a (0, 2)-net with
+// random permutations on both of its sides. Base 4, but for the last of the lowest `spp_bits` and of all `bits` where
+// they are odd.
+std::uint32_t random_net(std::uint32_t place, int spp_bits, int bits, std::uint32_t seed) {
+    std::uint32_t result = 0;
+    for (int done = 0; done < bits;) {
+        const int width = done + 1 == spp_bits || done + 1 == bits ? 1 : 2;
+        const std::uint32_t before = place >> (done + width);
+        const std::uint32_t random = mix(seed + (static_cast<std::uint32_t>(done) << 16) + (before << done | result));
+        const std::uint32_t digit = place >> done;
+        result = width == 2 ? result << 2 | permuted_digit(digit & 3u, random) : result << 1 | ((digit ^ random) & 1u);
+        done += width;
+    }
+    return result;
+}
+
+// a * b in the field of sixteen elements, x^4 = x + 1.
+std::uint32_t product16(std::uint32_t a, std::uint32_t b) {
+    std::uint32_t sum = 0;
+    for (int i = 0; i < 4; ++i) sum ^= (a >> i & 1u) * (b << i);
+    return (sum & 15u) ^ (sum >> 4) ^ (sum >> 4 << 1);
+}
+
+// The pixels of a block of 4 x 4 read one net, each from another place on: its number in the block times a factor by
+// chance is added to the time, digit by digit. Where two triangles have different factors, their places differ by all
+// sixteen numbers, so what they hide together evens out over the block.
+float threshold_over_time(std::uint32_t surface, std::uint32_t px, std::uint32_t py, std::uint32_t index, int spp) {
+    const int spp_bits = std::bit_width(static_cast<unsigned>(spp) - 1u), bits = std::max(spp_bits, 4);
+    const std::uint32_t block = mix(mix(mix(px >> 2) + (py >> 2)) + surface);
+    const std::uint32_t lane = (px & 1u) | (py & 1u) << 1 | (px & 2u) << 1 | (py & 2u) << 2;
+    const std::uint32_t place = index ^ product16(1u + ((block >> 16) * 15u >> 16), lane);
+    const std::uint32_t stratum = random_net(place, spp_bits, bits, block);
+    const std::uint32_t random = mix(block + 0x9e3779b9u * (1u + (index << 4 | lane)));
+    return static_cast<float>((stratum << (32 - bits) | random >> bits) >> 8) * 0x1p-24f;
+}
+
 // A triangle's corners in its Primitive.
 struct Corners {
     const Frame& frame;
@@ -75,12 +120,12 @@ float transmission(const Frame& frame, const Material& material, const Primitive
 
 }  // namespace
 
-// Stratified over the pixel's samples, independent between triangles: two layers, also of one mesh, must not hide
-// together.
 float opacity_threshold(std::uint32_t triangle, int px, int py, int sample_index, const OpacityPattern& pattern) {
-    const std::uint32_t pixel = mix(mix(static_cast<std::uint32_t>(px)) + static_cast<std::uint32_t>(py));
-    const std::uint32_t seed = mix(pixel + mix(triangle + 0x9e3779b9u) + mix(pattern.seed));
+    const std::uint32_t x = static_cast<std::uint32_t>(px), y = static_cast<std::uint32_t>(py);
     const std::uint32_t index = static_cast<std::uint32_t>(sample_index);
+    const std::uint32_t surface = mix(triangle + 0x9e3779b9u) + mix(pattern.seed);
+    if (pattern.over_time) return threshold_over_time(surface, x, y, index, pattern.spp);
+    const std::uint32_t seed = mix(mix(mix(x) + y) + surface);
     const std::uint32_t n = static_cast<std::uint32_t>(std::max(1, pattern.spp));
     const float offset = static_cast<float>(mix(seed + index + 1u) >> 8) * 0x1p-24f;
     return std::min((static_cast<float>(permuted(index % n, n, seed)) + offset) / static_cast<float>(n),

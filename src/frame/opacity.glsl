@@ -10,6 +10,7 @@ const int kMixedOpacity = 0, kSolid = 1, kClear = 2;            // OpacityClass
 
 uniform int samples_per_pixel;
 uniform uint sample_seed;
+uniform bool thresholds_over_time;
 
 // One channel of a texture's finest level.
 struct OpacityTexture {
@@ -122,10 +123,46 @@ uint permuted(uint i, uint n, uint seed) {
     return i;
 }
 
+uint permuted_digit(uint digit, uint random) {
+    uint g = ((random >> 16) * 3u) >> 16;
+    return ((0x9c78e4u >> (8u * g + 2u * digit)) & 3u) ^ (random & 3u);
+}
+
+uint random_net(uint place, int spp_bits, int bits, uint seed) {
+    uint result = 0u;
+    for (int done = 0; done < bits;) {
+        int width = done + 1 == spp_bits || done + 1 == bits ? 1 : 2;
+        uint before = place >> (done + width);
+        uint random = mixed(seed + (uint(done) << 16) + ((before << done) | result));
+        uint digit = place >> done;
+        result = width == 2 ? (result << 2) | permuted_digit(digit & 3u, random) : (result << 1) | ((digit ^ random) & 1u);
+        done += width;
+    }
+    return result;
+}
+
+uint product16(uint a, uint b) {
+    uint sum = 0u;
+    for (int i = 0; i < 4; ++i) sum ^= ((a >> i) & 1u) * (b << i);
+    return (sum & 15u) ^ (sum >> 4) ^ ((sum >> 4) << 1);
+}
+
+float threshold_over_time(uint surface, uvec2 pixel, uint index) {
+    int spp_bits = findMSB(samples_per_pixel), bits = max(spp_bits, 4);
+    uvec2 of_block = pixel >> 2;
+    uint block = mixed(mixed(mixed(of_block.x) + of_block.y) + surface);
+    uint lane = (pixel.x & 1u) | ((pixel.y & 1u) << 1) | ((pixel.x & 2u) << 1) | ((pixel.y & 2u) << 2);
+    uint place = index ^ product16(1u + (((block >> 16) * 15u) >> 16), lane);
+    uint stratum = random_net(place, spp_bits, bits, block);
+    uint random = mixed(block + 0x9e3779b9u * (1u + ((index << 4) | lane)));
+    return float(((stratum << (32 - bits)) | (random >> bits)) >> 8) / 16777216.0;
+}
+
 // What alpha must exceed at a sample of a blended triangle.
 float opacity_threshold(uint triangle, ivec2 pixel, uint index) {
-    uint place = mixed(mixed(uint(pixel.x)) + uint(pixel.y));
-    uint seed = mixed(place + mixed(triangle + 0x9e3779b9u) + mixed(sample_seed));
+    uint surface = mixed(triangle + 0x9e3779b9u) + mixed(sample_seed);
+    if (thresholds_over_time) return threshold_over_time(surface, uvec2(pixel), index);
+    uint seed = mixed(mixed(mixed(uint(pixel.x)) + uint(pixel.y)) + surface);
     uint n = uint(samples_per_pixel);
     precise float offset = float(mixed(seed + index + 1u) >> 8) / 16777216.0;
     precise float sum = float(permuted(index % n, n, seed)) + offset;

@@ -2,6 +2,7 @@
 // Alpha masks and blended surfaces: whether a covered sample of a triangle is really a hit. Asked by the coverage
 // stage, the references and later the shadow maps alike.
 
+#include <bit>
 #include <cstdint>
 #include <glm/vec2.hpp>
 
@@ -15,15 +16,20 @@ namespace pentaprism {
 struct OpacityPattern {
     int spp;
     std::uint32_t seed;
+    bool over_time;  ///< indices are in the order of time, and thresholds are stratified over that: for powers of two
 
-    OpacityPattern(int samples_per_pixel, std::uint32_t of_pattern) : spp(samples_per_pixel), seed(of_pattern) {}
-    OpacityPattern(const SampleTable& samples) : spp(samples.spp()), seed(samples.seed()) {}
+    OpacityPattern(int samples_per_pixel, std::uint32_t of_pattern, bool in_order_of_time = false)
+        : spp(samples_per_pixel),
+          seed(of_pattern),
+          over_time(in_order_of_time && std::has_single_bit(static_cast<unsigned>(samples_per_pixel))) {}
+    OpacityPattern(const SampleTable& samples)
+        : OpacityPattern(samples.spp(), samples.seed(), samples.is_in_order_of_time()) {}
 };
 
 /// MASK: bilinear alpha of mip 0 at the sample's own barycentrics, times factor and vertex colour, reaches the cutoff.
 /// Surfaces that let light through: as blended ones, see_through(). BLEND: stochastic transparency (Enderton, Sintorn,
-/// Shirley, Luebke 2010): alpha exceeds a threshold that is a hash of (triangle, pixel, sample index, seed), stratified
-/// over the samples of the pixel (Laine & Karras 2011). OPAQUE: true. Thread-safe; no allocation.
+/// Shirley, Luebke 2010): alpha exceeds opacity_threshold(), stratified over the samples of the pixel (Laine & Karras
+/// 2011). OPAQUE: true. Thread-safe; no allocation.
 bool is_opaque_at(const Frame& frame, std::uint32_t triangle, const float barycentrics[3], int px, int py,
                   int sample_index, const OpacityPattern& pattern);
 
@@ -54,7 +60,11 @@ struct OpacityTerms {
 };
 OpacityTerms opacity_terms(const Frame& frame, std::uint32_t triangle);
 
-/// What alpha must exceed at a sample of a blended triangle; in [0, 1).
+/// What alpha must exceed at a sample of a blended triangle; in [0, 1). By chance in (triangle, pixel, sample index,
+/// seed): uniform at each sample, one of a pixel's in each of spp equal intervals, independent between triangles, also
+/// those of one mesh: two layers must not hide together. Over time (docs/develop/algorithms.md 8): so also within each
+/// run of 4^k indices from a multiple of 4^k on, and within each quarter, sixteenth, ... of [0, 1) over such runs;
+/// and at each index the thresholds of the sixteen pixels of a block are in different sixteenths.
 float opacity_threshold(std::uint32_t triangle, int px, int py, int sample_index, const OpacityPattern& pattern);
 
 /// Share of samples that see through a thin surface of this transmission (KHR_materials_transmission): as stochastic

@@ -11,6 +11,7 @@ void set_uniforms(const Program& program, const PassData& data, const Region& re
     program.set("pass_slots", count);
     program.set("samples_per_pixel", data.table.spp());
     program.set("sample_seed", data.table.seed());
+    program.set("thresholds_over_time", OpacityPattern(data.table).over_time ? 1 : 0);
     program.set("w_near", view.w_near());
     program.set("lens_ratio", view.lens.ratio);
     program.set("z_near", static_cast<float>(view.depth_near));

@@ -55,6 +55,10 @@ bool is_by_time(Grouping grouping) {
     return grouping == Grouping::kMotion || grouping == Grouping::kTime;
 }
 
+bool is_by_time_or_both(Grouping grouping) {
+    return is_by_time(grouping) || grouping == Grouping::kBoth;
+}
+
 // Slots of the samples of one pixel of such a pattern, so that those of a vector are near each other where they blur:
 // by lens cell, of both or one coordinate after the other, or by time.
 void order_by_blur(std::span<const RawSample> samples, Grouping grouping, std::span<std::uint16_t> slot_of_index) {
@@ -125,6 +129,7 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
       seed_(seed),
       grouping_(pattern == SamplePattern::kFree ? wanted : Grouping::kStill),
       pattern_(pattern),
+      in_order_of_time_(sampler == Sampler::kStratified && is_by_time_or_both(grouping_)),
       times_(std::move(times)),
       eye_(std::move(eye)) {
     const Grouping grouping = grouping_;

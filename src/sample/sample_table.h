@@ -61,6 +61,10 @@ class SampleTable {
     Grouping grouping() const { return grouping_; }
     SamplePattern pattern() const { return pattern_; }
 
+    /// Index i of a pixel has a time in the i-th of spp() equal intervals of the shutter; but of kMotion, the indices
+    /// from a multiple of four on share the four intervals there in an order of the pixel's own.
+    bool is_in_order_of_time() const { return in_order_of_time_; }
+
     /// Blocks are addressed in the whole picture: block (bx, by) covers pixels [4 bx, 4 bx + 4) x [4 by, 4 by + 4).
     /// A rolling shutter and a cat's eye give each place times and lens points of its own: its vectors are written into
     /// `room`, which serves again.
@@ -117,6 +121,7 @@ class SampleTable {
     std::uint32_t seed_;
     Grouping grouping_;
     SamplePattern pattern_;
+    bool in_order_of_time_;
     SampleTimes times_;
     CatsEye eye_;
     std::vector<SampleVector> vectors_;   // [cell of the period][block][slot]

@@ -110,15 +110,16 @@ bool is_usable(const MovingTriangle& m) {
     return usable;
 }
 
-// Appends the box if something of it is in view.
-void take(const ScreenBox& box, bool perspective, Casters::Box like, std::vector<Casters::Box>& out) {
-    if (box.empty()) return;
+// Writes the box if something of it is in view. Returns where the next one goes.
+Casters::Box* take(const ScreenBox& box, bool perspective, Casters::Box like, Casters::Box* out) {
+    if (box.empty()) return out;
     if (perspective &&
         (box.x0 > kWidestTangent || box.x1 < -kWidestTangent || box.y0 > kWidestTangent || box.y1 < -kWidestTangent))
-        return;
+        return out;
     like.x0 = next_below(static_cast<float>(box.x0)), like.x1 = next_above(static_cast<float>(box.x1));
     like.y0 = next_below(static_cast<float>(box.y0)), like.y1 = next_above(static_cast<float>(box.y1));
-    out.push_back(like);
+    *out = like;
+    return out + 1;
 }
 
 // A little before the nearest of the triangle's depths, as rounding may put a sample there.
@@ -177,7 +178,12 @@ class SeenPoints {
     bool simple_ = true;
 };
 
-void bound_part(const Frame& frame, const Part& part, std::vector<Casters::Box>& out) {
+std::size_t most_boxes(const Part& part) {
+    return part.triangle_count * static_cast<std::size_t>(part.moves ? part.segments : 1);
+}
+
+// Writes the part's boxes. Returns the end of them.
+Casters::Box* bound_part(const Frame& frame, const Part& part, Casters::Box* out) {
     const SeenPoints seen(frame, part);
     const bool perspective = frame.view.perspective;
     for (std::uint32_t triangle = part.first_triangle; triangle < part.first_triangle + part.triangle_count;
@@ -188,16 +194,17 @@ void bound_part(const Frame& frame, const Part& part, std::vector<Casters::Box>&
             Casters::Box box{
                 0, 0, 0, 0, 0, triangle, static_cast<std::uint16_t>(segment), opacity == OpacityClass::kMixed};
             if (seen.simple()) {
-                take(seen.box(triangle, segment, box.nearest), perspective, box, out);
+                out = take(seen.box(triangle, segment, box.nearest), perspective, box, out);
                 continue;
             }
             const MovingTriangle m = moving_triangle(frame, triangle, segment);
             if (!is_usable(m)) continue;
             const auto [least, most] = std::minmax_element(&m.z[0][0], &m.z[0][0] + 6);
             box.nearest = nearest_depth(*least, *most);
-            take(screen_bounds(m, frame.view.w_near(), 1.0), perspective, box, out);
+            out = take(screen_bounds(m, frame.view.w_near(), 1.0), perspective, box, out);
         }
     }
+    return out;
 }
 
 }  // namespace
@@ -207,20 +214,24 @@ Casters make_casters(const WorldMotion& world, const Frame& frame, const LightVi
     std::vector<std::uint32_t> taken;
     casters.frame = place_parts(world, frame, view, width, taken);
     Frame& seen = casters.frame;
-    std::vector<std::vector<Casters::Box>> bounded(taken.size());
+    // Each range of parts writes where all before it leave room, and then they move together: little memory is touched
+    // that is not needed.
+    std::vector<std::size_t> first(taken.size() + 1);
+    for (std::size_t i = 0; i < taken.size(); ++i) first[i + 1] = first[i] + most_boxes(seen.parts[i]);
+    casters.room = std::make_unique_for_overwrite<Casters::Box[]>(first.back());
+    std::vector<std::span<Casters::Box>> written(taken.size());
     for_ranges(parallel, taken.size(), [&](std::size_t begin, std::size_t end) {
+        Casters::Box* to = casters.room.get() + first[begin];
         for (std::size_t i = begin; i < end; ++i) {
             fill_part(world, frame, world.parts[taken[i]], view, static_cast<std::uint32_t>(i), seen);
-            bound_part(seen, seen.parts[i], bounded[i]);
+            written[i] = {to, bound_part(seen, seen.parts[i], to)};
+            to = written[i].data() + written[i].size();
         }
     });
-    std::size_t boxes = 0;
-    for (const auto& part : bounded) boxes += part.size();
-    casters.boxes.reserve(boxes);
-    for (auto& part : bounded) {
-        casters.boxes.insert(casters.boxes.end(), part.begin(), part.end());
-        part = {};
-    }
+    Casters::Box* last = casters.room.get();
+    for (const std::span<Casters::Box> boxes : written)
+        last = boxes.data() == last ? last + boxes.size() : std::copy(boxes.begin(), boxes.end(), last);
+    casters.boxes = {casters.room.get(), last};
     for (const Casters::Box& box : casters.boxes)
         casters.extent =
             std::max({casters.extent, std::abs(box.x0), std::abs(box.x1), std::abs(box.y0), std::abs(box.y1)});

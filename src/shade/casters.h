@@ -3,7 +3,8 @@
 
 #include <cstdint>
 #include <glm/mat3x3.hpp>
-#include <vector>
+#include <memory>
+#include <span>
 
 #include "frame/frame.h"
 #include "shade/world_motion.h"
@@ -30,8 +31,9 @@ struct Casters {
         bool mixed;  ///< its opacity is to be asked: OpacityClass::kMixed
     };
     Frame frame;  ///< x and y in metres or tangents; parts out of view are left out, so triangles have other numbers
-    std::vector<Box> boxes;
-    float extent = 0.0f;  ///< of the boxes, from the middle
+    std::span<const Box> boxes;
+    std::unique_ptr<Box[]> room;  ///< what `boxes` are of
+    float extent = 0.0f;          ///< of the boxes, from the middle
 };
 
 /// `width`: pixels of the frame's view. `parallel`: on all cores; false for calls from within a loop over cores that

@@ -112,7 +112,7 @@ const ShadowMap::List& ShadowMap::list(int exponent, int limit, int cx, int cy) 
     const int middle = width_ / kCellSize / 2;
     const float size = std::ldexp(static_cast<float>(kCellSize), exponent);
     const float x0 = static_cast<float>(cx - middle) * size, y1 = static_cast<float>(middle - cy) * size;
-    const std::vector<Casters::Box>& boxes = casters().boxes;
+    const std::span<const Casters::Box> boxes = casters().boxes;
     static thread_local List taken;  // grows here; what is kept has no room to spare
     const auto take = [&](std::uint32_t i) {
         const Casters::Box& box = boxes[i];

@@ -183,7 +183,8 @@ TEST_P(CoverTwins, AgreeForSqueezedCirclesOfConfusion) {
 TEST_P(CoverTwins, AgreeForMaskedAndBlendedSurfaces) {
     Random r(27);
     for (const AlphaMode alpha : {AlphaMode::kMask, AlphaMode::kBlend})
-        for (const int count : {spp(8), 11}) {  // thresholds permute the next power of two
+        // Thresholds permute the next power of two; those over time have digits of two bits and of one.
+        for (const int count : {spp(8), 11, 1, 2, 4, 16, 32}) {
             Soup s = soup();
             s.alpha = alpha;
             s.triangles = 3;

@@ -1,5 +1,6 @@
 // Stochastic transparency against the A-buffer with the same samples: the mean of many is the same, and chance about
 // opacity is all that it adds.
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -64,16 +65,20 @@ struct Differences {
     double z() const { return squared > 0 ? sum / std::sqrt(squared) : 0; }  // if their mean is 0
 };
 
-// Thresholds of opacity are drawn for each pixel and triangle: pixels are what is independent.
-TEST(ABuffer, IsTheMeanOfStochasticTransparency) {
+// Thresholds of opacity are drawn for each triangle and for each pixel or block: blocks are what is independent.
+class ABuffer : public ::testing::TestWithParam<Grouping> {};
+
+TEST_P(ABuffer, IsTheMeanOfStochasticTransparency) {
     const Scene scene = crossing_panes();
     RenderSettings settings;
     settings.image.width = settings.image.height = kSize;
     settings.shutter.shutter = 24;  // a second
+    settings.shutter.motion_blur = GetParam() != Grouping::kDefocus && GetParam() != Grouping::kStill;
     settings.camera.lens_radius = 0.1;
     settings.camera.focus_distance = 3.0;
+    settings.camera.defocus = GetParam() == Grouping::kDefocus || GetParam() == Grouping::kBoth;
     const Frame frame = frame_of(scene, settings);
-    ASSERT_EQ(grouping_for(frame), Grouping::kBoth);
+    ASSERT_EQ(grouping_for(frame), GetParam());
     ShadingOptions options;
     options.shadows = ShadowMode::kOff;
     const ShadingScene shading(frame, options);
@@ -93,20 +98,21 @@ TEST(ABuffer, IsTheMeanOfStochasticTransparency) {
         layers.shade(visibility, shading, samples, tile, glm::vec3(0.0f), hits, blended, counts);
         Differences of_tile[4];
         glm::dvec4 last[2] = {glm::dvec4(0.0), glm::dvec4(0.0)};
+        std::array<glm::dvec4, kBlocksPerCell> of_block{};
         for (int y = tile.y0; y < tile.y1; ++y)
             for (int x = tile.x0; x < tile.x1; ++x) {
                 const glm::dvec4 pixel[2] = {pixel_of(samples, hits, stochastic, x, y),
                                              pixel_of(samples, hits, blended, x, y)};
-                for (int c = 0; c < 4; ++c) {
-                    of_tile[c].add(pixel[0][c] - pixel[1][c]);
-                    of_picture[c].add(pixel[0][c] - pixel[1][c]);
-                }
+                of_block[(y - tile.y0) / kBlockSize * kCellBlocks + (x - tile.x0) / kBlockSize] +=
+                    (pixel[0] - pixel[1]) / double{kLanes};
                 if (x > tile.x0) {
                     noise += glm::dot(pixel[0] - last[0], pixel[0] - last[0]);
                     noise_of_layers += glm::dot(pixel[1] - last[1], pixel[1] - last[1]);
                 }
                 last[0] = pixel[0], last[1] = pixel[1];
             }
+        for (const glm::dvec4& d : of_block)
+            for (int c = 0; c < 4; ++c) of_tile[c].add(d[c]), of_picture[c].add(d[c]);
         for (const Differences& d : of_tile) {
             if (d.squared == 0) continue;
             chi += d.z() * d.z();
@@ -124,6 +130,9 @@ TEST(ABuffer, IsTheMeanOfStochasticTransparency) {
     EXPECT_LT(chi, regions + 4 * std::sqrt(4 * 2.0 * regions));
     EXPECT_LT(noise_of_layers, 0.5 * noise);
 }
+
+INSTANTIATE_TEST_SUITE_P(Blur, ABuffer,
+                         ::testing::Values(Grouping::kStill, Grouping::kMotion, Grouping::kDefocus, Grouping::kBoth));
 
 }  // namespace
 }  // namespace pentaprism

@@ -99,6 +99,144 @@ TEST(StochasticTransparency, WhollyOpaqueAndWhollyClearSurfacesAreNotNoisy) {
     EXPECT_EQ(share[1], 1.0);
 }
 
+// Thresholds over time, as pictures with motion blur have them.
+float over_time(std::uint32_t triangle, int px, int py, int index, int spp, std::uint32_t seed = 0) {
+    return opacity_threshold(triangle, px, py, index, OpacityPattern(spp, seed, true));
+}
+
+TEST(ThresholdsOverTime, OfAPixelAreOneInEachOfSppIntervals) {
+    for (const int spp : {1, 2, 3, 4, 8, 16, 32, 64, 100, 256, 2048, 4096})
+        for (std::uint32_t triangle = 0; triangle < 20; ++triangle) {
+            std::vector<int> count(spp);
+            for (int index = 0; index < spp; ++index)
+                ++count[static_cast<std::size_t>(over_time(triangle, 7, 2, index, spp) * static_cast<float>(spp))];
+            EXPECT_EQ(std::count(count.begin(), count.end(), 1), spp) << spp;
+        }
+}
+
+// What thresholds that are a permutation by chance of the whole pixel do not have.
+TEST(ThresholdsOverTime, OfEachRunOfTimesAreOneInEachOfEqualIntervals) {
+    for (const int spp : {4, 8, 16, 64, 128, 256})
+        for (int run = 4; run <= spp; run *= 4)
+            for (std::uint32_t triangle = 0; triangle < 10; ++triangle)
+                for (int first = 0; first < spp; first += run) {
+                    std::vector<int> count(run);
+                    for (int index = first; index < first + run; ++index)
+                        ++count[static_cast<std::size_t>(over_time(triangle, 5, 9, index, spp) *
+                                                         static_cast<float>(run))];
+                    EXPECT_EQ(std::count(count.begin(), count.end(), 1), run) << spp << ", times from " << first;
+                }
+}
+
+TEST(ThresholdsOverTime, OfABlockAreInDifferentSixteenthsAtEachTime) {
+    for (const int spp : {1, 2, 4, 8, 16, 64, 1024})
+        for (int index = 0; index < spp; index += 1 + spp / 20)
+            for (int block = 0; block < 20; ++block) {
+                std::uint32_t sixteenths = 0;
+                for (int pixel = 0; pixel < 16; ++pixel)
+                    sixteenths |=
+                        1u << static_cast<int>(16 * over_time(3, 4 * block + pixel % 4, 8 + pixel / 4, index, spp));
+                EXPECT_EQ(sixteenths, 0xffffu) << spp << ", time " << index;
+            }
+}
+
+// Sums of what is independent: blocks, of which all thresholds of a triangle hang together.
+struct Blocks {
+    double n = 0, sum = 0, squares = 0;
+    void add(double x) { n += 1, sum += x, squares += x * x; }
+    double mean() const { return sum / n; }
+    double variance() const { return (squares - sum * sum / n) / (n - 1); }
+    double z(double expected) const {
+        const double error = std::sqrt(variance() / n);
+        return error > 0 ? (mean() - expected) / error : (mean() == expected ? 0 : 1e9);
+    }
+};
+
+// Share of a block's samples that see through all of some layers; `of_pixels`: the same of each pixel.
+Blocks seen_through(int layers, float opacity, int spp, std::uint32_t first_triangle, Blocks& of_pixels) {
+    Blocks blocks;
+    for (int block = 0; block < 2000; ++block) {
+        int in_block = 0;
+        for (int pixel = 0; pixel < 16; ++pixel) {
+            int seen = 0;
+            for (int index = 0; index < spp; ++index) {
+                bool through = true;
+                for (int i = 0; through && i < layers; ++i)
+                    through = !(opacity > over_time(first_triangle + i, 4 * (block % 64) + pixel % 4,
+                                                    4 * (block / 64) + pixel / 4, index, spp, 11));
+                seen += through;
+            }
+            of_pixels.add(double(seen) / spp);
+            in_block += seen;
+        }
+        blocks.add(double(in_block) / (16 * spp));
+    }
+    return blocks;
+}
+
+TEST(ThresholdsOverTime, OfStackedLayersMultiplyAndDoNotHideTogether) {
+    for (const int spp : {1, 2, 4, 8, 16, 64})
+        for (const int layers : {2, 3, 8})
+            for (const float opacity : {0.5f, 0.3f}) {
+                Blocks pixels;
+                const Blocks blocks = seen_through(layers, opacity, spp, 100, pixels);
+                const double expected = std::pow(1.0 - opacity, layers);
+                EXPECT_LT(std::abs(blocks.z(expected)), 4.5) << layers << " layers, " << spp;
+                // Layers whose thresholds were shifted copies of each other would vary many times as much as those
+                // drawn without any order; half more is what two in the order of time may have.
+                const double by_chance = expected * (1 - expected) / spp;
+                if (layers > 2 || spp < 4) {
+                    EXPECT_LT(pixels.variance(), 1.1 * by_chance) << layers << " layers, " << spp;
+                }
+                EXPECT_LT(blocks.variance(), 1.3 * pixels.variance() / 16) << layers << " layers, " << spp;
+                if (layers != 2) continue;
+                const double a = opacity * (1 - opacity), drawn = a * a / std::max(1, spp - 1);
+                if (opacity == 0.5f && spp > 1) {
+                    EXPECT_LT(pixels.variance(), 1.4 * drawn) << spp;
+                }
+            }
+}
+
+TEST(ThresholdsOverTime, OfTwoTrianglesAndOfOneInTwoBlocksAreUncorrelatedAndUniform) {
+    for (const int spp : {1, 4, 16}) {
+        Blocks mean, square, triangles, neighbours;
+        for (int block = 0; block < 20000; ++block) {
+            const int px = 4 * (block % 100) + 1, py = 4 * (block / 100) + 2, index = block % spp;
+            const double a = over_time(7, px, py, index, spp), b = over_time(8, px, py, index, spp),
+                         c = over_time(7, px + 4, py, index, spp);
+            mean.add(a), square.add(a * a);
+            triangles.add((a - 0.5) * (b - 0.5));
+            neighbours.add((a - 0.5) * (c - 0.5));
+        }
+        EXPECT_LT(std::abs(mean.z(0.5)), 4.5) << spp;
+        EXPECT_LT(std::abs(square.z(1.0 / 3.0)), 4.5) << spp;
+        EXPECT_LT(std::abs(triangles.z(0.0)), 4.5) << spp;
+        EXPECT_LT(std::abs(neighbours.z(0.0)), 4.5) << spp;
+    }
+}
+
+TEST(ThresholdsOverTime, AreForPicturesWhoseSamplesAreInTheOrderOfTime) {
+    const Lens lens;
+    for (const auto& [grouping, in_order] : {std::pair(Grouping::kStill, false), std::pair(Grouping::kDefocus, false),
+                                             std::pair(Grouping::kMotion, true), std::pair(Grouping::kBoth, true)}) {
+        EXPECT_EQ(OpacityPattern(SampleTable(16, 0, lens, grouping)).over_time, in_order);
+        EXPECT_FALSE(OpacityPattern(SampleTable(12, 0, lens, grouping)).over_time);
+        const SampleTable free(16, 0, lens, grouping, SamplePattern::kFree, {}, {}, Sampler::kSobol);
+        EXPECT_FALSE(OpacityPattern(free).over_time);
+    }
+    for (const Grouping grouping : {Grouping::kMotion, Grouping::kBoth, Grouping::kTime}) {
+        const SampleTable table(16, 3, lens, grouping);
+        for (int px = 0; px < 8; ++px)
+            for (int index = 0; index < 16; ++index) {
+                const int interval = static_cast<int>(16 * table.sample(px, 5, index).t);
+                EXPECT_EQ(interval / 4, index / 4);
+                if (grouping == Grouping::kMotion) {
+                    EXPECT_EQ(interval, index);
+                }
+            }
+    }
+}
+
 // A disk of radius 0.35 drawn as a smooth ramp over two texels: bilinear alpha reaches 1/2 on the circle.
 Scene disk(float depth) {
     Scene scene = scene_with_camera();

@@ -107,5 +107,17 @@ TEST(SampleLayout, BlockMeansOfFramesVaryNoMoreThanThoseOfFreePixelsAndLessUnder
     }
 }
 
+// The wings that beat there are blended: two thirds of the noise was that of thresholds drawn for each pixel without
+// regard to time, and this was 1.0 for pixels and for block means.
+TEST(SampleLayout, BlendedSurfacesThatMoveVaryLessThanWithThresholdsThatKnowNothingOfTime) {
+    const Look look({"builtin:fairy-forest", false, {160, 352, 288, 416}, 0});
+    for (const auto& [side, most] : {std::pair(1, 0.92), std::pair(4, 0.85)}) {
+        const Pictures free = look.render(Sampler::kSobol, VisibilityMethod::kStochastic, side);
+        const Ratio ours = ratio(look.render(Sampler::kStratified, VisibilityMethod::kStochastic, side), free);
+        std::printf("  %dx%d: %.2f +- %.2f\n", side, side, ours.value, ours.error);
+        EXPECT_LT(ours.value + ours.error, most) << side;
+    }
+}
+
 }  // namespace
 }  // namespace pentaprism

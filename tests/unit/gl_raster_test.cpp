@@ -10,6 +10,7 @@
 #include <optional>
 #include <pentaprism/render.h>
 
+#include "frame/opacity.h"
 #include "gl/culling.h"
 #include "support/gl_look.h"
 #include "support/random.h"
@@ -63,6 +64,39 @@ TEST_F(GlBackend, SeesTheSameInFilesOfOthers) {
         settings.camera.fstop = 2.8;
         settings.method.seed = 7;  // thresholds of opacity depend on it
         expect_same(load_scene(std::string(folder) + "/" + file), settings, 12, "none");
+    }
+}
+
+// Of powers of two, odd and even ones, and of another number.
+TEST_F(GlBackend, HasTheSameThresholdsOfBlendedSurfacesThatMove) {
+    Scene scene;
+    support::add_camera(scene, "camera", {0, 0, 3});
+    Animation& animation = scene.animations.emplace_back();
+    animation.duration = 1.0;
+    for (int i = 0; i < 5; ++i) {
+        const Index node = support::add_square(scene, "pane", {0.1 * i - 0.3, 0.05 * i, -0.2 * i}, 0.8f);
+        scene.meshes[scene.nodes[node].mesh].primitives[0].material = static_cast<Index>(scene.materials.size());
+        Material& material = scene.materials.emplace_back();
+        material.double_sided = true;
+        material.alpha_mode = AlphaMode::kBlend;
+        material.base_color.w = 0.2f + 0.15f * static_cast<float>(i);
+        Channel channel;
+        channel.node = node;
+        channel.path = ChannelPath::kTranslation;
+        channel.times = {0.0f, 1.0f};
+        for (const float side : {-3.0f, 3.0f})
+            for (const float x : {side * static_cast<float>(i - 2), 0.5f * side, -0.2f * static_cast<float>(i)})
+                channel.values.push_back(x);
+        animation.channels.push_back(channel);
+    }
+    for (const int spp : {1, 2, 6, 8, 16, 32}) {
+        RenderSettings settings = settings_of(64, 48, spp);
+        settings.method.seed = 3;
+        expect_same(scene, settings, 12, "none");
+        settings.camera.fstop = 2.8;
+        expect_same(scene, settings, 12, "none");
+        const OpacityPattern pattern(pose_picture(scene, settings, 12).samples);
+        EXPECT_EQ(pattern.over_time, spp != 6);
     }
 }
 
