@@ -4,6 +4,11 @@
 # rooms of two threads; of the rest of the 300 MB a whole frame's film and shadow maps have their share.
 source "$(dirname "$0")/lib.bash"
 
+if grep -qsE '^PENTAPRISM_SANITIZE:[A-Z]+=.' "$(dirname "$PENTAPRISM")/CMakeCache.txt"; then
+    echo "skipped: sanitizers need memory of their own"
+    exit 77
+fi
+
 size=(-r 1280x720 -q)
 succeeds render builtin:hand "${size[@]}" -s 1 --crop 640,641,360,361 --shadows off -t 1 -o one.exr --stats scene.json
 for spp in 256 4096; do
