@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "resolve/sample_order.h"
 #include "resolve/sample_place.h"
 #include "sample/net.h"
-#include "shade/sample_order.h"
 
 namespace pentaprism {
 namespace {

@@ -13,9 +13,9 @@
 #include "resolve/flow.h"
 #include "resolve/flow_occlusion.h"
 #include "resolve/named_ids.h"
+#include "resolve/sample_order.h"
 #include "resolve/surface_samples.h"
 #include "resolve/tile_sums.h"
-#include "shade/sample_order.h"
 #include "shade/tile_shade.h"
 
 namespace pentaprism {

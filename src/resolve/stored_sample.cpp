@@ -3,8 +3,8 @@
 #include <limits>
 #include <span>
 
+#include "resolve/sample_order.h"
 #include "resolve/sample_place.h"
-#include "shade/sample_order.h"
 
 namespace pentaprism {
 

@@ -1,6 +1,6 @@
 #pragma once
-// The samples of one block of pixels in index order, pixel by pixel: the order of every sum over samples, so that no
-// sum depends on how the sample table arranges its vectors.
+// The samples of one block of pixels in index order, pixel by pixel: the order of what is kept or summed sample by
+// sample, so that it does not depend on how the sample table arranges its vectors.
 
 #include <cstdint>
 #include <vector>
