@@ -55,11 +55,11 @@ struct Tables {  // scene/texture.glsl
     float sheen_albedos[16 * 16] = {};
 };
 
-struct alignas(32) FaceRecord {  // shade/shadow_map.glsl
-    double position[4], right[4], up[4], forward[4];
+struct FaceRecord {  // shade/shadow_map.glsl
+    float position[4], right[4], up[4], forward[4];
     std::int32_t perspective, width, least_exponent, unused;
 };
-static_assert(sizeof(FaceRecord) == 160);
+static_assert(sizeof(FaceRecord) == 80);
 
 struct WorldPartRecord {  // shade/shadow_lookup.glsl
     std::uint32_t vertex_count;
@@ -70,10 +70,6 @@ template <std::size_t kCount>
 void put(float (&out)[kCount], const glm::vec3& v, float w) {
     static_assert(kCount == 4);
     out[0] = v.x, out[1] = v.y, out[2] = v.z, out[3] = w;
-}
-
-void put(double (&out)[4], const glm::dvec3& v) {
-    out[0] = v.x, out[1] = v.y, out[2] = v.z, out[3] = 0.0;
 }
 
 template <class T>
@@ -321,10 +317,10 @@ void ShadingUpload::put_shadows(const Device& device, const ShadingScene& scene)
         for (const auto& map : shadows.faces(i)) {
             const LightView& view = map->view();
             FaceRecord& out = faces.emplace_back();
-            put(out.position, view.position);
-            put(out.right, view.axes[0]);
-            put(out.up, view.axes[1]);
-            put(out.forward, view.axes[2]);
+            put(out.position, view.position, 0.0f);
+            put(out.right, view.axes[0], 0.0f);
+            put(out.up, view.axes[1], 0.0f);
+            put(out.forward, view.axes[2], 0.0f);
             out.perspective = view.perspective ? 1 : 0;
             out.width = map->width();
             out.least_exponent = map->least_exponent();

@@ -16,7 +16,6 @@ namespace pentaprism {
 namespace {
 
 constexpr float kLargest = 1e12f;
-constexpr double kNear = 1e-3;  // metres before a perspective light
 
 using Ranges = std::function<void(std::size_t, std::size_t)>;
 
@@ -32,63 +31,14 @@ void for_ranges(bool parallel, std::size_t n, const Ranges& body) {
 bool is_out_of_view(const WorldMotion::Bounds& bounds, const LightView& view) {
     if (!view.perspective) return false;
     const glm::dvec3 low(bounds.low), high(bounds.high);
-    const glm::dvec3 middle = 0.5 * (low + high) - view.position, half = 0.5 * (high - low);
+    const glm::dvec3 middle = 0.5 * (low + high) - glm::dvec3(view.position), half = 0.5 * (high - low);
+    const glm::dmat3 axes(view.axes);
     const auto least = [&](const glm::dvec3& n) { return glm::dot(n, middle) - glm::dot(glm::abs(n), half); };
-    const glm::dvec3 forward = view.axes[2], side = static_cast<double>(kWidestTangent) * forward;
-    if (least(-forward) > -kNear) return true;
+    const glm::dvec3 side = static_cast<double>(kWidestTangent) * axes[2];
+    if (least(-axes[2]) > -static_cast<double>(kNearestToLight)) return true;
     for (int axis = 0; axis < 2; ++axis)
-        if (least(view.axes[axis] - side) > 0.0 || least(-view.axes[axis] - side) > 0.0) return true;
+        if (least(axes[axis] - side) > 0.0 || least(-axes[axis] - side) > 0.0) return true;
     return false;
-}
-
-// The parts in view, numbered anew.
-Frame place_parts(const WorldMotion& world, const Frame& frame, const LightView& view, int width,
-                  std::vector<std::uint32_t>& taken) {
-    Frame out;
-    out.scene = frame.scene;
-    out.textures = frame.textures;
-    out.view.width = out.view.height = width;
-    out.view.perspective = view.perspective;
-    out.view.shutter = frame.view.shutter;
-    out.view.depth_near = view.perspective ? kNear : -1e30;
-    out.view.depth_far = 1e30;
-    std::uint32_t points = 0, triangles = 0;
-    for (std::uint32_t i = 0; i < world.parts.size(); ++i) {
-        if (is_out_of_view(world.bounds[i], view)) continue;
-        taken.push_back(i);
-        Part& part = out.parts.emplace_back(world.parts[i]);
-        part.two_sided = true;  // a shadow does not ask for the side
-        part.first_point = points;
-        part.first_triangle = triangles;
-        points += part.vertex_count * static_cast<std::uint32_t>(part.moves ? part.segments + 1 : 1);
-        triangles += part.triangle_count;
-    }
-    out.points.resize(points);
-    if (!view.perspective) out.depths.resize(points);
-    out.corners.resize(3 * std::size_t{triangles});
-    out.part_of.resize(triangles);
-    if (!frame.pieces.empty()) out.pieces.resize(triangles);
-    return out;
-}
-
-void fill_part(const WorldMotion& world, const Frame& frame, const Part& was, const LightView& view,
-               std::uint32_t number, Frame& out) {
-    const Part& part = out.parts[number];
-    const std::size_t points = part.vertex_count * static_cast<std::size_t>(part.moves ? part.segments + 1 : 1);
-    for (std::size_t i = 0; i < points; ++i) {
-        const glm::dvec3 p = glm::dvec3(world.points[was.first_point + i]) - view.position;
-        const glm::vec3 seen(glm::dot(p, view.axes[0]), glm::dot(p, view.axes[1]), glm::dot(p, view.axes[2]));
-        out.points[part.first_point + i] = glm::vec4(seen.x, seen.y, view.perspective ? seen.z : 1.0f, 0.0f);
-        if (!view.perspective) out.depths[part.first_point + i] = seen.z;
-    }
-    const std::uint32_t* corner = &world.corners[3 * std::size_t{was.first_triangle}];
-    std::uint32_t* to = &out.corners[3 * std::size_t{part.first_triangle}];
-    for (std::size_t i = 0; i < 3 * std::size_t{part.triangle_count}; ++i)
-        to[i] = corner[i] - was.first_point + part.first_point;
-    std::fill_n(out.part_of.begin() + part.first_triangle, part.triangle_count, number);
-    if (!frame.pieces.empty())
-        std::copy_n(frame.pieces.begin() + was.first_triangle, part.triangle_count,
-                    out.pieces.begin() + part.first_triangle);
 }
 
 // The next float above, as std::nextafter(), which is a call. Not of one that is no number.
@@ -124,57 +74,75 @@ Casters::Box* take(const ScreenBox& box, bool perspective, Casters::Box like, Ca
 
 // A little before the nearest of the triangle's depths, as rounding may put a sample there.
 float nearest_depth(float nearest, float farthest) {
-    constexpr float kMargin = 32.0f / 16777216.0f;
-    return nearest - kMargin * std::max(std::abs(nearest), std::abs(farthest));
+    return nearest - kDepthRounding * std::max(std::abs(nearest), std::abs(farthest));
 }
 
-// Points of a part on the light's picture, for boxes of triangles that are wholly before the light: with the lens
-// closed a moving triangle lies between its six ends as they are seen. A box of its own for each triangle, as
-// screen_bounds() makes it, costs five times as much.
+std::size_t knots_of(const Part& part) {
+    return part.moves ? static_cast<std::size_t>(part.segments) + 1 : 1;
+}
+
+// A part's points on the light's picture.
 class SeenPoints {
   public:
-    SeenPoints(const Frame& frame, const Part& part) : frame_(frame), part_(part) {
-        const std::size_t count = part.vertex_count * static_cast<std::size_t>(part.moves ? part.segments + 1 : 1);
+    SeenPoints(const WorldMotion& world, const Part& part, const LightView& view)
+        : world_(world), part_(part), perspective_(view.perspective) {
+        const std::size_t count = part.vertex_count * knots_of(part);
+        placed_.resize(count);
         seen_.resize(count);
         for (std::size_t i = 0; i < count; ++i) {
-            const glm::vec4& p = frame.points[part.first_point + i];
-            const float inverse = 1.0f / p.z;
-            const float depth = frame.view.perspective ? p.z : frame.depths[part.first_point + i];
-            seen_[i] = {p.x * inverse, p.y * inverse, p.z, depth};
-            simple_ = simple_ && p.z >= kNear && std::abs(p.x) <= kLargest && std::abs(p.y) <= kLargest &&
-                      std::abs(depth) <= kLargest;
+            const glm::vec3 p = placed_[i] = view.place(world.points[part.first_point + i]);
+            const float w = perspective_ ? p.z : 1.0f, inverse = 1.0f / w;
+            seen_[i] = {p.x * inverse, p.y * inverse};
+            simple_ = simple_ && w >= kNearestToLight && std::abs(p.x) <= kLargest && std::abs(p.y) <= kLargest &&
+                      std::abs(p.z) <= kLargest;
         }
     }
     /// Whether box() may be asked.
     bool simple() const { return simple_; }
 
-    ScreenBox box(std::uint32_t triangle, int segment, float& nearest_depth_of_it) const {
-        float least = INFINITY, most = -INFINITY, x0 = INFINITY, x1 = -INFINITY, y0 = INFINITY, y1 = -INFINITY,
-              nearest = INFINITY, farthest = 0.0f;
-        for (int k = 0; k < 3; ++k) {
-            std::size_t at = frame_.corners[3 * std::size_t{triangle} + k] - part_.first_point +
-                             static_cast<std::size_t>(segment) * part_.vertex_count;
-            for (int end = 0; end < (part_.moves ? 2 : 1); ++end, at += part_.vertex_count) {
-                const glm::vec4& p = seen_[at];
+    // For triangles that are wholly before the light: with the lens closed a moving triangle lies between its six ends
+    // as they are seen. A box of its own for each triangle, as screen_bounds() makes it, costs five times as much.
+    ScreenBox box(std::uint32_t triangle, int segment, float& nearest) const {
+        float x0 = INFINITY, x1 = -INFINITY, y0 = INFINITY, y1 = -INFINITY, least = INFINITY, most = -INFINITY;
+        for (int k = 0; k < 3; ++k)
+            for (int end = 0; end < (part_.moves ? 2 : 1); ++end) {
+                const std::size_t at = point(triangle, k, segment + end);
+                const glm::vec2& p = seen_[at];
                 x0 = std::min(x0, p.x), x1 = std::max(x1, p.x);
                 y0 = std::min(y0, p.y), y1 = std::max(y1, p.y);
-                nearest = std::min(nearest, p.z), farthest = std::max(farthest, p.z);
-                least = std::min(least, p.w), most = std::max(most, p.w);
+                least = std::min(least, placed_[at].z), most = std::max(most, placed_[at].z);
             }
-        }
-        nearest_depth_of_it = nearest_depth(least, most);
+        nearest = nearest_depth(least, most);
         // As in screen_bounds(), where |x| <= w * reach; a quarter more for the divisions here.
         constexpr float kUnitRoundoff = 1.0f / 16777216.0f;
-        const float slack = 20.0f * kUnitRoundoff * farthest / nearest;
+        const float slack = 20.0f * kUnitRoundoff * (perspective_ ? most / least : 1.0f);
         const float slack_x = slack * (32.0f + 2.0f * std::max(std::abs(x0), std::abs(x1)));
         const float slack_y = slack * (32.0f + 2.0f * std::max(std::abs(y0), std::abs(y1)));
-        return {x0 - slack_x, x1 + slack_x, y0 - slack_y, y1 + slack_y, nearest - 2.0f * kUnitRoundoff * farthest};
+        return {x0 - slack_x, x1 + slack_x, y0 - slack_y, y1 + slack_y};
+    }
+
+    MovingTriangle triangle(std::uint32_t triangle, int segment) const {
+        MovingTriangle m{};
+        for (int k = 0; k < 3; ++k)
+            for (int end = 0; end < 2; ++end) {
+                const glm::vec3& p = placed_[point(triangle, k, part_.moves ? segment + end : 0)];
+                m.x[k][end] = p.x, m.y[k][end] = p.y, m.z[k][end] = p.z;
+                m.w[k][end] = perspective_ ? p.z : 1.0f;
+            }
+        return m;
     }
 
   private:
-    const Frame& frame_;
+    std::size_t point(std::uint32_t triangle, int corner, int knot) const {
+        return world_.corners[3 * std::size_t{triangle} + corner] - part_.first_point +
+               static_cast<std::size_t>(knot) * part_.vertex_count;
+    }
+
+    const WorldMotion& world_;
     const Part& part_;
-    std::vector<glm::vec4> seen_;  // x, y; w, depth
+    bool perspective_;
+    std::vector<glm::vec3> placed_;
+    std::vector<glm::vec2> seen_;  // x and y over w
     bool simple_ = true;
 };
 
@@ -183,25 +151,29 @@ std::size_t most_boxes(const Part& part) {
 }
 
 // Writes the part's boxes. Returns the end of them.
-Casters::Box* bound_part(const Frame& frame, const Part& part, Casters::Box* out) {
-    const SeenPoints seen(frame, part);
-    const bool perspective = frame.view.perspective;
+Casters::Box* bound_part(const Casters& casters, const Part& part, Casters::Box* out) {
+    const bool perspective = casters.view.perspective;
+    const SeenPoints seen(*casters.world, part, casters.view);
     for (std::uint32_t triangle = part.first_triangle; triangle < part.first_triangle + part.triangle_count;
          ++triangle) {
-        const OpacityClass opacity = opacity_class(frame, triangle);
+        const OpacityClass opacity = opacity_class(*casters.frame, triangle);
         if (opacity == OpacityClass::kClear) continue;
         for (int segment = 0; segment < (part.moves ? part.segments : 1); ++segment) {
-            Casters::Box box{
-                0, 0, 0, 0, 0, triangle, static_cast<std::uint16_t>(segment), opacity == OpacityClass::kMixed};
+            Casters::Box like{
+                0, 0, 0, 0, triangle, static_cast<std::uint16_t>(segment), 0, opacity == OpacityClass::kMixed};
+            ScreenBox box;
+            float nearest = 0.0f;
             if (seen.simple()) {
-                out = take(seen.box(triangle, segment, box.nearest), perspective, box, out);
-                continue;
+                box = seen.box(triangle, segment, nearest);
+            } else {
+                const MovingTriangle m = seen.triangle(triangle, segment);
+                if (!is_usable(m)) continue;
+                const auto [least, most] = std::minmax_element(&m.z[0][0], &m.z[0][0] + 6);
+                nearest = nearest_depth(*least, *most);
+                box = screen_bounds(m, perspective ? kNearestToLight : 0.5, 1.0);
             }
-            const MovingTriangle m = moving_triangle(frame, triangle, segment);
-            if (!is_usable(m)) continue;
-            const auto [least, most] = std::minmax_element(&m.z[0][0], &m.z[0][0] + 6);
-            box.nearest = nearest_depth(*least, *most);
-            out = take(screen_bounds(m, frame.view.w_near(), 1.0), perspective, box, out);
+            like.limit = static_cast<std::uint8_t>(perspective ? limit_of(nearest, true) : 0);
+            out = take(box, perspective, like, out);
         }
     }
     return out;
@@ -209,22 +181,21 @@ Casters::Box* bound_part(const Frame& frame, const Part& part, Casters::Box* out
 
 }  // namespace
 
-Casters make_casters(const WorldMotion& world, const Frame& frame, const LightView& view, int width, bool parallel) {
-    Casters casters;
+Casters make_casters(const WorldMotion& world, const Frame& frame, const LightView& view, bool parallel) {
+    Casters casters{&world, &frame, view, {}, nullptr, 0.0f};
     std::vector<std::uint32_t> taken;
-    casters.frame = place_parts(world, frame, view, width, taken);
-    Frame& seen = casters.frame;
+    for (std::uint32_t i = 0; i < world.parts.size(); ++i)
+        if (!is_out_of_view(world.bounds[i], view)) taken.push_back(i);
     // Each range of parts writes where all before it leave room, and then they move together: little memory is touched
     // that is not needed.
     std::vector<std::size_t> first(taken.size() + 1);
-    for (std::size_t i = 0; i < taken.size(); ++i) first[i + 1] = first[i] + most_boxes(seen.parts[i]);
+    for (std::size_t i = 0; i < taken.size(); ++i) first[i + 1] = first[i] + most_boxes(world.parts[taken[i]]);
     casters.room = std::make_unique_for_overwrite<Casters::Box[]>(first.back());
     std::vector<std::span<Casters::Box>> written(taken.size());
     for_ranges(parallel, taken.size(), [&](std::size_t begin, std::size_t end) {
         Casters::Box* to = casters.room.get() + first[begin];
         for (std::size_t i = begin; i < end; ++i) {
-            fill_part(world, frame, world.parts[taken[i]], view, static_cast<std::uint32_t>(i), seen);
-            written[i] = {to, bound_part(seen, seen.parts[i], to)};
+            written[i] = {to, bound_part(casters, world.parts[taken[i]], to)};
             to = written[i].data() + written[i].size();
         }
     });

@@ -105,8 +105,7 @@ class Lookup {
         : receiver_(receiver), point_(point), seed_(seed) {
         const LightView& view = receiver.map().view();
         const bool none = point.offset == glm::vec3(0.0f);
-        for (int axis = 0; axis < 3; ++axis)
-            offset_[axis] = none ? 0.0f : glm::dot(glm::vec3(view.axes[axis]), point.offset);
+        for (int axis = 0; axis < 3; ++axis) offset_[axis] = none ? 0.0f : glm::dot(view.axes[axis], point.offset);
         half_ = 0.5f * static_cast<float>(receiver.map().width());
     }
 
@@ -185,7 +184,7 @@ class Lookup {
         const ShadowMap& map = receiver_.map();
         float distance = 1.0f;
         if constexpr (kPerspective) {
-            distance = glm::dot(point_.position - glm::vec3(map.view().position), glm::vec3(map.view().axes[2]));
+            distance = glm::dot(point_.position - map.view().position, map.view().axes[2]);
             if (!(distance > 1e-3f)) return false;
             if (!(reach < 0.99f * kWidestTangent)) return false;
         }

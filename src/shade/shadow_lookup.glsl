@@ -41,12 +41,13 @@ Corners corners_at_knot(int knot) {
     Corners made;
     for (int k = 0; k < 3; ++k) {
         int corner = int(texelFetch(world_corners, int(3u * receiver.triangle) + k).r + uint(knot) * receiver.part.vertex_count);
-        precise dvec3 p = dvec3(texelFetch(world_points, corner).xyz) - receiver.face.position.xyz;
-        dvec3 x = receiver.face.right.xyz, y = receiver.face.up.xyz, z = receiver.face.forward.xyz;
-        precise double along_x = p.x * x.x + p.y * x.y + p.z * x.z;
-        precise double along_y = p.x * y.x + p.y * y.y + p.z * y.z;
-        precise double along_z = p.x * z.x + p.y * z.y + p.z * z.z;
-        made.at[k] = vec3(float(along_x), float(along_y), float(along_z));
+        // LightView::place()
+        precise vec3 p = texelFetch(world_points, corner).xyz - receiver.face.position.xyz;
+        vec3 x = receiver.face.right.xyz, y = receiver.face.up.xyz, z = receiver.face.forward.xyz;
+        precise float along_x = p.x * x.x + p.y * x.y + p.z * x.z;
+        precise float along_y = p.x * y.x + p.y * y.y + p.z * y.z;
+        precise float along_z = p.x * z.x + p.y * z.y + p.z * z.z;
+        made.at[k] = vec3(along_x, along_y, along_z);
     }
     return made;
 }
@@ -131,7 +132,7 @@ bool choose_level(float reach, float depth) {
     float away = 1.0;
     vec4 position = shade_points[looked_point].position;
     if (receiver.face.perspective != 0) {
-        away = dot(position.xyz - vec3(receiver.face.position.xyz), vec3(receiver.face.forward.xyz));
+        away = dot(position.xyz - receiver.face.position.xyz, receiver.face.forward.xyz);
         if (!(away > 1e-3)) return false;
         if (!(reach < 0.99 * kWidestTangent)) return false;
     }
@@ -252,8 +253,8 @@ uint lit_lanes(uint point, int face, vec3 offset, uint seed, out bool here) {
     receiver.path = receiver.part.moves == 0 ? kStill : receiver.part.segments == 1 ? kStraight : kInPieces;
     receiver.offset = vec3(0.0);
     if (offset != vec3(0.0))
-        receiver.offset = vec3(dot(vec3(receiver.face.right.xyz), offset), dot(vec3(receiver.face.up.xyz), offset),
-                               dot(vec3(receiver.face.forward.xyz), offset));
+        receiver.offset = vec3(dot(receiver.face.right.xyz, offset), dot(receiver.face.up.xyz, offset),
+                               dot(receiver.face.forward.xyz, offset));
     half_width = 0.5 * float(receiver.face.width);
     float reach, depth;
     if (!find_ways(reach, depth) || !choose_level(reach, depth)) return 0xffffu;

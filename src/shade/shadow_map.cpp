@@ -12,7 +12,6 @@ namespace {
 
 constexpr int kFinest = -24;  // exponent of a texel's size
 constexpr int kPageCells = 16;
-constexpr int kLimits = 24, kLeastLimit = -8;  // depths of 2^-8 metres and up; the last one holds everything
 constexpr int kLevels = (ShadowMap::kCoarsest - kFinest + 1) * kLimits;
 
 // What all cells share in which nothing is.
@@ -78,18 +77,13 @@ const Casters& ShadowMap::casters() const {
 }
 
 void ShadowMap::make(bool parallel) const {
-    casters_ = make_casters(world_, frame_, view_, width_, parallel);
+    casters_ = make_casters(world_, frame_, view_, parallel);
     root_exponent_ =
         view_.perspective ? -4 : std::clamp(std::ilogb(casters_.extent / kCellSize + 1e-30f) + 1, kFinest, kCoarsest);
 }
 
 int ShadowMap::exponent_of(float texel) const {
     return texel > 0.0f && std::isfinite(texel) ? std::clamp(exponent(texel), least_exponent_, kCoarsest) : kCoarsest;
-}
-
-int ShadowMap::limit_of(float depth) const {
-    if (!view_.perspective || !std::isfinite(depth)) return kLimits - 1;
-    return std::clamp(exponent(depth) + 1 - kLeastLimit, 0, kLimits - 1);
 }
 
 ShadowMap::Level& ShadowMap::level(int exponent, int limit) const {
@@ -106,36 +100,39 @@ ShadowMap::Cell& ShadowMap::cell(Level& level, int cx, int cy) const {
 }
 
 // What may be seen in a cell is among what may be seen in the cell of the next level that holds it.
-const ShadowMap::List& ShadowMap::list(int exponent, int limit, int cx, int cy) const {
-    Cell& here = cell(level(exponent, limit), cx, cy);
-    if (const List* known = here.list.load(std::memory_order_acquire)) return *known;
+void ShadowMap::find_boxes(int exponent, int limit, int cx, int cy, List& out) const {
     const int middle = width_ / kCellSize / 2;
     const float size = std::ldexp(static_cast<float>(kCellSize), exponent);
     const float x0 = static_cast<float>(cx - middle) * size, y1 = static_cast<float>(middle - cy) * size;
     const std::span<const Casters::Box> boxes = casters().boxes;
-    static thread_local List taken;  // grows here; what is kept has no room to spare
     const auto take = [&](std::uint32_t i) {
         const Casters::Box& box = boxes[i];
-        if (box.x0 <= x0 + size && box.x1 >= x0 && box.y0 <= y1 && box.y1 >= y1 - size) taken.push_back(i);
+        if (box.x0 <= x0 + size && box.x1 >= x0 && box.y0 <= y1 && box.y1 >= y1 - size) out.push_back(i);
     };
     if (exponent >= root_exponent_) {  // known since casters() was asked
-        const float farthest = limit < kLimits - 1 ? std::ldexp(1.0f, limit + kLeastLimit) : INFINITY;
-        taken.clear();
+        out.clear();
         for (std::uint32_t i = 0; i < boxes.size(); ++i)
-            if (boxes[i].nearest <= farthest) take(i);
-    } else {
-        const int px = middle + ((cx - middle) >> 1), py = middle + ((cy - middle) >> 1);
-        const List& wider = list(exponent + 1, limit, px, py);
-        taken.clear();
-        for (const std::uint32_t i : wider) take(i);
+            if (boxes[i].limit <= limit) take(i);
+        return;
     }
-    return *publish<const List>(here.list, std::make_unique<const List>(taken));
+    const int px = middle + ((cx - middle) >> 1), py = middle + ((cy - middle) >> 1);
+    const List& wider = list(exponent + 1, limit, px, py);
+    out.clear();
+    for (const std::uint32_t i : wider) take(i);
+}
+
+const ShadowMap::List& ShadowMap::list(int exponent, int limit, int cx, int cy) const {
+    Cell& here = cell(level(exponent, limit), cx, cy);
+    if (const List* known = here.list.load(std::memory_order_acquire)) return *known;
+    static thread_local List found;  // grows here; what is kept has no room to spare
+    find_boxes(exponent, limit, cx, cy, found);
+    return *publish<const List>(here.list, std::make_unique<const List>(found));
 }
 
 const float* ShadowMap::depths(int exponent, int limit, int cx, int cy) const {
     Cell& here = cell(level(exponent, limit), cx, cy);
     if (const float* known = here.depths.load(std::memory_order_acquire)) return known;
-    const float* made = render(exponent, cx, cy, list(exponent, limit, cx, cy));
+    const float* made = render(exponent, limit, cx, cy);
     ++cells_rendered_;
     const float* expected = nullptr;
     if (here.depths.compare_exchange_strong(expected, made, std::memory_order_acq_rel)) return made;
@@ -147,7 +144,9 @@ bool ShadowMap::is_empty(const float* depths) {
     return depths == kEmptyCell.data();
 }
 
-const float* ShadowMap::render(int exponent, int cx, int cy, const List& list) const {
+const float* ShadowMap::render(int exponent, int limit, int cx, int cy) const {
+    static thread_local List list;
+    find_boxes(exponent, limit, cx, cy, list);
     if (list.empty()) return kEmptyCell.data();
     static thread_local AlignedVector<float> depths(ShadowSamples::kPerCell), bounds(ShadowSamples::kPerCell);
     draw_({casters(), list, samples_, cx, cy, width_, std::ldexp(1.0f, -exponent)}, depths.data(), bounds.data());

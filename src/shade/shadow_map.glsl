@@ -7,7 +7,7 @@ const int kCoarsest = 24, kFinest = -24, kLimits = 24, kLeastLimit = -8;
 
 // ShadowMap and its LightView.
 struct ShadowFace {
-    dvec4 position, right, up, forward;
+    vec4 position, right, up, forward;
     int perspective, width, least_exponent, unused;
 };
 

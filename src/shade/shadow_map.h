@@ -40,9 +40,8 @@ class ShadowMap {
     /// Level whose texels are as large as that, metres or tangents.
     int exponent_of(float texel) const;
 
-    /// What a perspective light casts on surfaces is between: a cell that holds less is rendered faster. Number of the
-    /// least limit not below that depth; an orthographic view has none.
-    int limit_of(float depth) const;
+    /// A cell with a lower limit of depth (casters.h) is rendered faster.
+    int limit_of(float depth) const { return pentaprism::limit_of(depth, view_.perspective); }
 
     /// Depths beyond which a cell's samples are in shadow (DrawShadowCell); infinite where nothing is hit before the
     /// limit, and perhaps so beyond it. Thread-safe, and the same whoever asks first.
@@ -56,7 +55,7 @@ class ShadowMap {
   private:
     using List = std::vector<std::uint32_t>;  // into Casters::boxes
     struct Cell {
-        std::atomic<const List*> list{nullptr};
+        std::atomic<const List*> list{nullptr};  // of those in which finer ones lie
         std::atomic<const float*> depths{nullptr};
     };
     struct Page;
@@ -66,8 +65,9 @@ class ShadowMap {
     const Casters& casters() const;
     Level& level(int exponent, int limit) const;
     Cell& cell(Level& level, int cx, int cy) const;
+    void find_boxes(int exponent, int limit, int cx, int cy, List& out) const;
     const List& list(int exponent, int limit, int cx, int cy) const;
-    const float* render(int exponent, int cx, int cy, const List& list) const;
+    const float* render(int exponent, int limit, int cx, int cy) const;
 
     const WorldMotion& world_;
     const Frame& frame_;

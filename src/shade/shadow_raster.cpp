@@ -35,7 +35,7 @@ struct Triangle {
 // Those of the hits that are opaque, as the camera's coverage stage decides it. `terms`: of the triangle, when asked.
 Mask opaque(const ShadowCellWork& work, std::uint32_t triangle, std::optional<OpacityTerms>& terms, int first,
             const Vec e[3], Vec sum, Mask hit) {
-    const Frame& frame = work.casters.frame;
+    const Frame& frame = *work.casters.frame;
     if (!terms) terms = opacity_terms(frame, triangle);
     const TileWork tile_work{frame, work.samples.table(), {}, {}, Tile{}};
     return decide_opacity(F(), tile_work, triangle, *terms, e, sum, hit, [&](int lane) {
@@ -80,8 +80,7 @@ HWY_INLINE void test(const ShadowCellWork& work, const ShadowSamples::Cell& samp
     const Vec weighted = hn::Add(hn::Add(hn::Mul(e[0], z[0]), hn::Mul(e[1], z[1])), hn::Mul(e[2], z[2]));
     const Vec depth = hn::Div(weighted, sum);
     hit = hn::And(hit, hn::Lt(depth, stored));  // not for a depth that is no number: seen edge-on
-    if constexpr (kPerspective)
-        hit = hn::And(hit, hn::Ge(depth, hn::Set(f, static_cast<float>(work.casters.frame.view.w_near()))));
+    if constexpr (kPerspective) hit = hn::And(hit, hn::Ge(depth, hn::Set(f, kNearestToLight)));
     if constexpr (kMoves)
         if (T.segments > 1.0f) hit = hn::And(hit, hn::And(hn::Ge(s, zero), hn::Lt(s, hn::Set(f, 1.0f))));
     if (hn::AllFalse(f, hit)) return;
@@ -121,8 +120,8 @@ HWY_NOINLINE void draw_triangle(const ShadowCellWork& work, const Triangle& T, f
 void draw_cell(const ShadowCellWork& work, float* depths, float* bounds) {
     std::fill_n(depths, ShadowSamples::kPerCell, INFINITY);
     std::fill_n(bounds, ShadowSamples::kPerCell, INFINITY);
-    const Frame& frame = work.casters.frame;
-    const bool perspective = frame.view.perspective;
+    const WorldMotion& world = *work.casters.world;
+    const bool perspective = work.casters.view.perspective;
     ShadowSetup setup;
     for (std::size_t begin = 0; begin < work.list.size(); begin += kLanes) {
         const int count = static_cast<int>(std::min<std::size_t>(kLanes, work.list.size() - begin));
@@ -131,7 +130,7 @@ void draw_cell(const ShadowCellWork& work, float* depths, float* bounds) {
         set_up(work, list, setup);
         for (int lane = 0; lane < count; ++lane) {
             const Casters::Box& box = work.casters.boxes[list[lane]];
-            const Part& part = frame.parts[frame.part_of[box.triangle]];
+            const Part& part = world.parts[world.part_of[box.triangle]];
             const Triangle T{setup,        lane,     static_cast<float>(part.segments), static_cast<float>(box.segment),
                              box.triangle, box.mixed};
             if (part.moves)

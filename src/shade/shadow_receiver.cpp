@@ -1,11 +1,9 @@
 #include "shade/shadow_receiver.h"
 
 #include <algorithm>
-#include <glm/geometric.hpp>
 
 namespace pentaprism {
 
-// In double as the casters are (casters.cpp): a surface that casts and receives is the same.
 void ShadowReceiver::start(const WorldMotion& world, std::uint32_t triangle, const ShadowMap& map) {
     const Part& part = world.parts[world.part_of[triangle]];
     map_ = &map;
@@ -19,8 +17,8 @@ void ShadowReceiver::start(const WorldMotion& world, std::uint32_t triangle, con
     for (int knot = 0; knot < knots; ++knot)
         for (int k = 0; k < 3; ++k) {
             const std::uint32_t at = world.corners[3 * std::size_t{triangle} + k] + knot * part.vertex_count;
-            const glm::dvec3 p = glm::dvec3(world.points[at]) - view.position;
-            for (int axis = 0; axis < 3; ++axis) *out++ = static_cast<float>(glm::dot(p, view.axes[axis]));
+            const glm::vec3 p = view.place(world.points[at]);
+            for (int axis = 0; axis < 3; ++axis) *out++ = p[axis];
         }
     if (path_ != Path::kInPieces) return;
     knots_stride_ = static_cast<std::size_t>(std::max(knots, kReadable));

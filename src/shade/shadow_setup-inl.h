@@ -69,7 +69,6 @@ HWY_INLINE void find_rects(F f, const ShadowCellWork& work, const std::uint32_t*
     hn::Store(hn::Min(last, texel(hn::Sub(texels(boxes->x1), left), kSlack)), d, out.x1 + first);
     hn::Store(hn::Max(zero, texel(hn::Sub(top, texels(boxes->y1)), -kSlack)), d, out.y0 + first);
     hn::Store(hn::Min(last, texel(hn::Sub(top, texels(boxes->y0)), kSlack)), d, out.y1 + first);
-    hn::Store(hn::GatherIndex(f, &boxes->nearest, index), f, out.nearest + first);
 }
 
 // Slopes of the sides and what lies between: the triangle does, whenever. Nothing is known of triangles that reach
@@ -105,15 +104,15 @@ HWY_INLINE Vec receding_of(F f, const Vec x[3], const Vec y[3], const Vec z[3]) 
     return hn::IfThenElseZero(hn::IsFinite(recedes), recedes);  // else seen edge-on
 }
 
-// Places in Frame::points of the corners when their segments begin and end.
+// Places in WorldMotion::points of the corners when their segments begin and end.
 struct ShadowCorners {
     alignas(64) std::int32_t open[3][kLanes], close[3][kLanes];
     HWY_NOINLINE void find(const ShadowCellWork& work, const std::uint32_t* list) {
-        const Frame& frame = work.casters.frame;
+        const WorldMotion& world = *work.casters.world;
         for (int lane = 0; lane < kLanes; ++lane) {
             const Casters::Box& box = work.casters.boxes[list[lane]];
-            const Part& part = frame.parts[frame.part_of[box.triangle]];
-            const std::uint32_t* corner = &frame.corners[3 * std::size_t{box.triangle}];
+            const Part& part = world.parts[world.part_of[box.triangle]];
+            const std::uint32_t* corner = &world.corners[3 * std::size_t{box.triangle}];
             const std::uint32_t knot = box.segment * part.vertex_count, step = part.moves ? part.vertex_count : 0;
             for (int k = 0; k < 3; ++k) {
                 open[k][lane] = static_cast<std::int32_t>(corner[k] + knot);
@@ -123,34 +122,49 @@ struct ShadowCorners {
     }
 };
 
+struct PlacedPoints {
+    Vec x, y, z;
+};
+
+// LightView::place() in lanes.
+HWY_INLINE PlacedPoints placed(F f, const LightView& view, std::span<const glm::vec3> points, hn::Vec<I> at) {
+    const hn::Vec<I> first = hn::Add(hn::Add(at, at), at);
+    Vec p[3];
+    for (int axis = 0; axis < 3; ++axis)
+        p[axis] = hn::Sub(hn::GatherIndex(f, &points[0][axis], first), hn::Set(f, view.position[axis]));
+    const auto along = [&](const glm::vec3& axis) HWY_ATTR {
+        const Vec xy = hn::Add(hn::Mul(p[0], hn::Set(f, axis.x)), hn::Mul(p[1], hn::Set(f, axis.y)));
+        return hn::Add(xy, hn::Mul(p[2], hn::Set(f, axis.z)));
+    };
+    return {along(view.axes[0]), along(view.axes[1]), along(view.axes[2])};
+}
+
 // `list`: kLanes of the cell's boxes.
 HWY_NOINLINE void set_up(const ShadowCellWork& work, const std::uint32_t* list, ShadowSetup& out) {
     const F f;
     const I d;
-    const Frame& frame = work.casters.frame;
-    const bool perspective = frame.view.perspective;
+    const LightView& view = work.casters.view;
+    const bool perspective = view.perspective;
     const float middle = 0.5f * static_cast<float>(work.width) - 0.5f * kCellSize;
     const Vec centre_x = hn::Set(f, static_cast<float>(work.cx * kCellSize) - middle);
     const Vec centre_y = hn::Set(f, middle - static_cast<float>(work.cy * kCellSize));
-    const Vec scale = hn::Set(f, work.scale), half = hn::Set(f, 0.5f), zero = hn::Zero(f);
+    const Vec scale = hn::Set(f, work.scale), half = hn::Set(f, 0.5f);
     ShadowCorners corners;
     corners.find(work, list);
     for (int first = 0; first < kLanes; first += kWidth) {
         find_rects(f, work, list, first, out);
-        Vec mid_x[3], mid_y[3], mid_z[3], seen_x[6], seen_y[6], nearest = hn::Set(f, INFINITY);
+        Vec mid_x[3], mid_y[3], mid_z[3], seen_x[6], seen_y[6], depths[6];
         for (int k = 0; k < 3; ++k) {
             Vec x[2], y[2], z[2];
             for (int end = 0; end < 2; ++end) {
                 const hn::Vec<I> at = hn::Load(d, (end == 0 ? corners.open : corners.close)[k] + first);
-                const hn::Vec<I> point = hn::ShiftLeft<2>(at);
-                const float* points = &frame.points[0].x;
-                const Vec w = hn::GatherIndex(f, points + 2, point);
-                x[end] = difference_of_products(hn::GatherIndex(f, points, point), scale, centre_x, w);
-                y[end] = difference_of_products(hn::GatherIndex(f, points + 1, point), scale, centre_y, w);
-                z[end] = perspective ? w : hn::GatherIndex(f, frame.depths.data(), at);
+                const PlacedPoints p = placed(f, view, work.casters.world->points, at);
+                const Vec w = perspective ? p.z : hn::Set(f, 1.0f);
+                x[end] = difference_of_products(p.x, scale, centre_x, w);
+                y[end] = difference_of_products(p.y, scale, centre_y, w);
+                z[end] = depths[k + 3 * end] = p.z;
                 seen_x[k + 3 * end] = perspective ? hn::Div(x[end], w) : x[end];
                 seen_y[k + 3 * end] = perspective ? hn::Div(y[end], w) : y[end];
-                nearest = hn::Min(nearest, w);
             }
             const auto write = [&](const Vec v[2], float* to, float* change_to) HWY_ATTR {
                 const Vec change = hn::Sub(v[1], v[0]);
@@ -167,7 +181,11 @@ HWY_NOINLINE void set_up(const ShadowCellWork& work, const std::uint32_t* list, 
             mid_y[k] = hn::Mul(mid_y[k], inverse);
         }
         hn::Store(receding_of(f, mid_x, mid_y, mid_z), f, out.recedes + first);
-        find_strips(f, seen_x, seen_y, hn::Gt(nearest, zero), first, out);
+        const Vec nearest = least_of(depths);
+        const Vec size = hn::Max(hn::Abs(nearest), hn::Abs(most_of(depths)));
+        hn::Store(hn::Sub(nearest, hn::Mul(hn::Set(f, kDepthRounding), size)), f, out.nearest + first);
+        const Mask before_light = hn::Gt(nearest, hn::Set(f, perspective ? 0.0f : -INFINITY));
+        find_strips(f, seen_x, seen_y, before_light, first, out);
     }
 }
 

@@ -60,8 +60,8 @@ Shadows::Shadows(const Frame& frame, const Lighting& lighting, const glm::dvec3&
         for (std::size_t face = 0; face < faces; ++face) {
             LightView view;
             view.perspective = !sun;
-            view.position = glm::dvec3(maps.position);
-            view.axes = faces == 1 ? maps.axes : face_axes(maps.axes, static_cast<int>(face));
+            view.position = maps.position;
+            view.axes = glm::mat3(faces == 1 ? maps.axes : face_axes(maps.axes, static_cast<int>(face)));
             maps.faces.push_back(std::make_unique<ShadowMap>(world_, frame, *samples_, view, width));
             if (sun) maps.faces.back()->prepare();  // every picture asks for it
         }

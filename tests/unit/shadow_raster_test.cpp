@@ -53,9 +53,27 @@ WorldMotion random_world(support::Random& random) {
     return world;
 }
 
-// In pixels, as the exact test takes it.
-Frame in_texels(Frame frame) {
-    for (glm::vec4& p : frame.points) p.x *= kScale, p.y *= kScale;
+// What make_casters() asks for opacity: all is solid.
+Frame solid_frame(const WorldMotion& world) {
+    Frame frame;
+    frame.parts = world.parts;
+    frame.part_of = world.part_of;
+    return frame;
+}
+
+// As the light sees it, in pixels, for the exact test.
+Frame in_texels(const WorldMotion& world, const LightView& light) {
+    Frame frame = solid_frame(world);
+    frame.view.width = frame.view.height = kWidth;
+    frame.view.perspective = light.perspective;
+    frame.view.depth_near = light.perspective ? kNearestToLight : -1e30;
+    frame.view.depth_far = 1e30;
+    frame.corners = world.corners;
+    for (const glm::vec3& point : world.points) {
+        const glm::vec3 p = light.place(point);
+        frame.points.emplace_back(kScale * p.x, kScale * p.y, light.perspective ? p.z : 1.0f, 0.0f);
+        frame.depths.push_back(p.z);
+    }
     return frame;
 }
 
@@ -106,8 +124,8 @@ TEST(ShadowRaster, ACellHoldsWhatTheExactTestSeesOnEveryCpuTarget) {
             const WorldMotion world = random_world(random);
             LightView view;
             view.perspective = perspective;
-            const Casters casters = make_casters(world, Frame{}, view, kWidth, false);
-            const Frame exact = in_texels(casters.frame);
+            const Frame solid = solid_frame(world), exact = in_texels(world, view);
+            const Casters casters = make_casters(world, solid, view, false);
             std::vector<std::uint32_t> list(casters.boxes.size());
             for (std::uint32_t i = 0; i < list.size(); ++i) list[i] = i;
             for (int cell = 0; cell < 4; ++cell) {
@@ -149,7 +167,8 @@ TEST(ShadowRaster, BeyondASampleItsTriangleMayRecedeByHalfATexelButNotBeyondItsE
     world.points = {{-1, -1, 2}, {1, -1, 5}, {1, 1, 5}, {-1, 1, 2}};
     world.corners = {0, 1, 2, 0, 2, 3};
     world.part_of = {0, 0};
-    const Casters casters = make_casters(world, Frame{}, LightView{}, kWidth, false);
+    const Frame solid = solid_frame(world);
+    const Casters casters = make_casters(world, solid, LightView{}, false);
     const ShadowSamples samples(3);
     const std::vector<std::uint32_t> list = {0, 1};
     AlignedVector<float> depths(ShadowSamples::kPerCell), bounds(ShadowSamples::kPerCell);
