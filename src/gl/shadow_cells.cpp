@@ -101,6 +101,7 @@ std::uint32_t ShadowCells::receive() {
     const auto before = [](const glm::uvec2& a, const glm::uvec2& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; };
     std::sort(keys.begin(), keys.end(), before);
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    const ShadowCellStore::Visit visit(maps_.front()->store());
     std::vector<Drawn> cells;
     for (const glm::uvec2& key : keys) cells.push_back({key, nullptr});
     draw(cells);

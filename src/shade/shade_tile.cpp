@@ -74,6 +74,7 @@ void TileShader::go_to_block(std::uint32_t block) {
 std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& samples, const Tile& tile,
                                const Hits& hits, TileShade& out, bool roughly) {
     scene_ = &scene;
+    const ShadowCellStore::Visit visit(scene.shadows().store());
     by_quarters_ = scene.shadows().move();
     start(samples, hits);
     shaded_ = 0;

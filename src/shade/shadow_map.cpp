@@ -35,10 +35,7 @@ T* publish(std::atomic<T*>& place, std::unique_ptr<T> made) {
 struct ShadowMap::Page {
     std::array<Cell, kPageCells * kPageCells> cells;
     ~Page() {
-        for (Cell& cell : cells) {
-            delete cell.list.load();
-            if (const float* depths = cell.depths.load(); depths != kEmptyCell.data()) delete[] depths;
-        }
+        for (Cell& cell : cells) delete cell.list.load();
     }
 };
 
@@ -51,11 +48,12 @@ struct ShadowMap::Level {
     std::unique_ptr<std::atomic<Page*>[]> pages;
 };
 
-ShadowMap::ShadowMap(const WorldMotion& world, const Frame& frame, const ShadowSamples& samples, const LightView& view,
-                     int width)
+ShadowMap::ShadowMap(const WorldMotion& world, const Frame& frame, const ShadowSamples& samples, ShadowCellStore& store,
+                     const LightView& view, int width)
     : world_(world),
       frame_(frame),
       samples_(samples),
+      store_(store),
       draw_(draw_shadow_cell()),
       view_(view),
       width_(width),
@@ -131,30 +129,27 @@ const ShadowMap::List& ShadowMap::list(int exponent, int limit, int cx, int cy) 
 
 const float* ShadowMap::depths(int exponent, int limit, int cx, int cy) const {
     Cell& here = cell(level(exponent, limit), cx, cy);
-    if (const float* known = here.depths.load(std::memory_order_acquire)) return known;
-    const float* made = render(exponent, limit, cx, cy);
+    if (const float* known = store_.find(here.depths)) return known;
+    if (here.empty.load(std::memory_order_relaxed)) return kEmptyCell.data();
+    static thread_local AlignedVector<float> made(ShadowSamples::kPerCell);
     ++cells_rendered_;
-    const float* expected = nullptr;
-    if (here.depths.compare_exchange_strong(expected, made, std::memory_order_acq_rel)) return made;
-    if (made != kEmptyCell.data()) delete[] made;
-    return expected;
+    if (render(exponent, limit, cx, cy, made.data())) return store_.keep(here.depths, made.data());
+    here.empty.store(true, std::memory_order_relaxed);
+    return kEmptyCell.data();
 }
 
 bool ShadowMap::is_empty(const float* depths) {
     return depths == kEmptyCell.data();
 }
 
-const float* ShadowMap::render(int exponent, int limit, int cx, int cy) const {
+// False if nothing is in the cell.
+bool ShadowMap::render(int exponent, int limit, int cx, int cy, float* bounds) const {
     static thread_local List list;
     find_boxes(exponent, limit, cx, cy, list);
-    if (list.empty()) return kEmptyCell.data();
-    static thread_local AlignedVector<float> depths(ShadowSamples::kPerCell), bounds(ShadowSamples::kPerCell);
-    draw_({casters(), list, samples_, cx, cy, width_, std::ldexp(1.0f, -exponent)}, depths.data(), bounds.data());
-    if (std::all_of(bounds.begin(), bounds.end(), [](float depth) { return depth == INFINITY; }))
-        return kEmptyCell.data();
-    float* made = new float[bounds.size()];
-    std::copy(bounds.begin(), bounds.end(), made);
-    return made;
+    if (list.empty()) return false;
+    static thread_local AlignedVector<float> depths(ShadowSamples::kPerCell);
+    draw_({casters(), list, samples_, cx, cy, width_, std::ldexp(1.0f, -exponent)}, depths.data(), bounds);
+    return std::any_of(bounds, bounds + ShadowSamples::kPerCell, [](float depth) { return depth < INFINITY; });
 }
 
 }  // namespace pentaprism

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "shade/casters.h"
+#include "shade/shadow_cell_store.h"
 #include "shade/shadow_raster.h"
 
 namespace pentaprism {
@@ -21,10 +22,10 @@ class ShadowMap {
   public:
     static constexpr int kSamples = ShadowSamples::kSamples;
 
-    /// `width`: texels that a level spans, both ways; a power of two. `world`, `frame` and `samples` must outlive
-    /// this.
-    ShadowMap(const WorldMotion& world, const Frame& frame, const ShadowSamples& samples, const LightView& view,
-              int width);
+    /// `width`: texels that a level spans, both ways; a power of two. `world`, `frame`, `samples` and `store`, of
+    /// ShadowSamples::kPerCell floats, must outlive what is asked.
+    ShadowMap(const WorldMotion& world, const Frame& frame, const ShadowSamples& samples, ShadowCellStore& store,
+              const LightView& view, int width);
     ~ShadowMap();
     ShadowMap(const ShadowMap&) = delete;
     ShadowMap& operator=(const ShadowMap&) = delete;
@@ -44,11 +45,13 @@ class ShadowMap {
     int limit_of(float depth) const { return pentaprism::limit_of(depth, view_.perspective); }
 
     /// Depths beyond which a cell's samples are in shadow (DrawShadowCell); infinite where nothing is hit before the
-    /// limit, and perhaps so beyond it. Thread-safe, and the same whoever asks first.
+    /// limit, and perhaps so beyond it. Thread-safe, and the same whoever asks first. They stay for the visit of the
+    /// store during which they are asked for.
     const float* depths(int exponent, int limit, int cx, int cy) const;
     /// Whether these depths are those of a cell in which nothing is.
     static bool is_empty(const float* depths);
     const ShadowSamples& samples() const { return samples_; }
+    ShadowCellStore& store() const { return store_; }
 
     std::int64_t cells_rendered() const { return cells_rendered_; }
 
@@ -56,7 +59,8 @@ class ShadowMap {
     using List = std::vector<std::uint32_t>;  // into Casters::boxes
     struct Cell {
         std::atomic<const List*> list{nullptr};  // of those in which finer ones lie
-        std::atomic<const float*> depths{nullptr};
+        ShadowCellStore::Cell depths;
+        std::atomic<bool> empty{false};  // known to hold nothing
     };
     struct Page;
     struct Level;
@@ -67,11 +71,12 @@ class ShadowMap {
     Cell& cell(Level& level, int cx, int cy) const;
     void find_boxes(int exponent, int limit, int cx, int cy, List& out) const;
     const List& list(int exponent, int limit, int cx, int cy) const;
-    const float* render(int exponent, int limit, int cx, int cy) const;
+    bool render(int exponent, int limit, int cx, int cy, float* bounds) const;
 
     const WorldMotion& world_;
     const Frame& frame_;
     const ShadowSamples& samples_;
+    ShadowCellStore& store_;
     DrawShadowCell draw_;
     LightView view_;
     int width_, least_exponent_;

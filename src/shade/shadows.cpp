@@ -33,13 +33,19 @@ int level_width(const View& view) {
     return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::clamp(reach, 2048.0, 32768.0))));
 }
 
+// 48 MB for 1280 pixels: what some rows of tiles ask of several lights. Half of it draws as few cells twice.
+std::size_t cells_kept(const View& view) {
+    return 3072 * static_cast<std::size_t>(std::max(view.width, 1280)) / 1280;
+}
+
 bool is_around(const PosedLight& light) {
     return light.kind == LightKind::kPoint || (light.kind == LightKind::kSpot && light.outer_cone > kWidestCone);
 }
 
 }  // namespace
 
-Shadows::Shadows(const Frame& frame, const Lighting& lighting, const glm::dvec3& eye, ShadowMode mode) {
+Shadows::Shadows(const Frame& frame, const Lighting& lighting, const glm::dvec3& eye, ShadowMode mode)
+    : store_(std::make_unique<ShadowCellStore>(ShadowSamples::kPerCell, cells_kept(frame.view))) {
     maps_.resize(lighting.lights.size());
     if (mode == ShadowMode::kOff || lighting.lights.empty()) return;
     world_ = world_motion(frame, eye, mode == ShadowMode::kStill);
@@ -62,7 +68,7 @@ Shadows::Shadows(const Frame& frame, const Lighting& lighting, const glm::dvec3&
             view.perspective = !sun;
             view.position = maps.position;
             view.axes = glm::mat3(faces == 1 ? maps.axes : face_axes(maps.axes, static_cast<int>(face)));
-            maps.faces.push_back(std::make_unique<ShadowMap>(world_, frame, *samples_, view, width));
+            maps.faces.push_back(std::make_unique<ShadowMap>(world_, frame, *samples_, *store_, view, width));
             if (sun) maps.faces.back()->prepare();  // every picture asks for it
         }
     }

@@ -28,7 +28,10 @@ class Shadows {
     /// Of a light: none, one map, or six: +x -x +y -y +z -z.
     std::span<const std::unique_ptr<ShadowMap>> faces(std::size_t light) const { return maps_[light].faces; }
 
-    /// Cells of all maps rendered so far; a cell that two threads needed at once may count twice.
+    /// Whoever looks up shadows does so during a visit.
+    ShadowCellStore& store() const { return *store_; }
+
+    /// Cells of all maps rendered so far; a cell that two threads needed at once, or that was forgotten, counts again.
     std::int64_t cells_rendered() const;
 
   private:
@@ -41,6 +44,7 @@ class Shadows {
     friend class ShadowsOnTriangle;
     WorldMotion world_;
     std::unique_ptr<ShadowSamples> samples_;
+    std::unique_ptr<ShadowCellStore> store_;
     std::vector<LightMaps> maps_;
     std::size_t map_count_ = 0;
     ShadowLookup lookup_ = nullptr;

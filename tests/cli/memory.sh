@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # What a frame of 1280x720 needs beside its scene, however many samples a pixel gets: bench/resources.py measures whole
 # frames, which take minutes at 4096 samples. Here a part of one, which needs the same table of samples and the same
-# rooms of two threads; of the rest of the 300 MB a whole frame's film and shadow maps have their share.
+# rooms of two threads; of the rest of the 300 MB a whole frame's film and shadow maps have their share. Shadow maps are
+# held by a frame of many lights, which is 300 MB with its scene.
 source "$(dirname "$0")/lib.bash"
 
 if grep -qsE '^PENTAPRISM_SANITIZE:[A-Z]+=.' "$(dirname "$PENTAPRISM")/CMakeCache.txt"; then
@@ -19,4 +20,10 @@ scene, part = (json.load(open(name))["peak_mb"] for name in ("scene.json", "part
 print(f"{sys.argv[1]} samples: {part - scene:.0f} MB beside the scene")
 assert 0 < part - scene < 180' $spp
 done
+succeeds render builtin:fairy-forest "${size[@]}" -s 4 --frame 24 -t 2 -o lights.exr --stats lights.json
+check "21 shadow maps: below 300 MB in all" python3 -c '
+import json
+peak = json.load(open("lights.json"))["peak_mb"]
+print(f"21 shadow maps: {peak:.0f} MB in all")
+assert 0 < peak < 300'
 finish

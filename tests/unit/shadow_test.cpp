@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <numbers>
@@ -59,6 +60,7 @@ struct Stage {
         const WorldMotion world = world_motion(frame, glm::dvec3(0.0), true);
         glm::vec3 position(0.0f);
         for (int i = 0; i < 3; ++i) position += b[i] * world.points[world.corners[3 * triangle + i]];
+        const ShadowCellStore::Visit visit(shadows->store());
         ShadowsOnTriangle on_triangle;
         on_triangle.start(*shadows, triangle);
         ShadowPoint point;
@@ -224,6 +226,35 @@ TEST(Shadows, TheSizeOfTexelsDoesNotMoveAShadow) {
         EXPECT_EQ(stage.floor_lit(0.6f + 0.9f, 0.2f, texel), 0.0) << texel;
         EXPECT_EQ(stage.floor_lit(0.6f + 1.15f, 0.2f, texel), 1.0) << texel;
     }
+}
+
+TEST(Shadows, CellsThatWereForgottenAreDrawnTheSameAgain) {
+    Stage stage;
+    stage.move(add_mesh(stage.scene, {square(0.7f, 0.0f, kNone)}), {0.0f, 1.0f, 0.0f}, {0.5f, 1.0f, 0.0f});
+    stage.add_lamp({0.0f, 3.0f, 0.0f});
+    stage.finish();
+    LightView view;
+    view.perspective = true;
+    view.position = {0.0f, 3.0f, 0.0f};
+    view.axes = {{1, 0, 0}, {0, 0, -1}, {0, -1, 0}};
+    const Shadows& shadows = *stage.shadows;
+    constexpr int kWidth = 2048, kCells = kWidth / kCellSize;
+    ShadowCellStore few(ShadowSamples::kPerCell, 2), all(ShadowSamples::kPerCell, 10000);
+    const ShadowMap forgetful(shadows.world(), stage.frame, shadows.samples(), few, view, kWidth);
+    const ShadowMap keeping(shadows.world(), stage.frame, shadows.samples(), all, view, kWidth);
+    int hits = 0;
+    for (int round = 0; round < 2; ++round)
+        for (int cell = 0; cell < 64; ++cell) {
+            const ShadowCellStore::Visit a(few), b(all);
+            const int cx = kCells / 2 - 4 + cell % 8, cy = kCells / 2 - 4 + cell / 8, limit = kLimits - 1;
+            const float* again = forgetful.depths(-6, limit, cx, cy);
+            const float* kept = keeping.depths(-6, limit, cx, cy);
+            ASSERT_EQ(std::memcmp(again, kept, sizeof(float) * ShadowSamples::kPerCell), 0);
+            hits += !ShadowMap::is_empty(kept);
+        }
+    EXPECT_GT(hits, 100);
+    EXPECT_EQ(keeping.cells_rendered(), 64);
+    EXPECT_GT(forgetful.cells_rendered(), 100);
 }
 
 }  // namespace
