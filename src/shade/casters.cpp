@@ -60,16 +60,65 @@ bool is_usable(const MovingTriangle& m) {
     return usable;
 }
 
-// Writes the box if something of it is in view. Returns where the next one goes.
-Casters::Box* take(const ScreenBox& box, bool perspective, Casters::Box like, Casters::Box* out) {
-    if (box.empty()) return out;
-    if (perspective &&
-        (box.x0 > kWidestTangent || box.x1 < -kWidestTangent || box.y0 > kWidestTangent || box.y1 < -kWidestTangent))
-        return out;
-    like.x0 = next_below(static_cast<float>(box.x0)), like.x1 = next_above(static_cast<float>(box.x1));
-    like.y0 = next_below(static_cast<float>(box.y0)), like.y1 = next_above(static_cast<float>(box.y1));
-    *out = like;
-    return out + 1;
+// Where boxes are written, one after the other.
+class BoxWriter {
+  public:
+    BoxWriter(Casters::Boxes* boxes, std::size_t first) : boxes_(boxes), next_(first) {}
+    std::size_t next() const { return next_; }
+
+    /// If something of the box is in view.
+    void add(const ScreenBox& box, bool perspective, float nearest, std::uint32_t triangle, int segment, bool mixed) {
+        if (box.empty()) return;
+        if (perspective && (box.x0 > kWidestTangent || box.x1 < -kWidestTangent || box.y0 > kWidestTangent ||
+                            box.y1 < -kWidestTangent))
+            return;
+        Casters::Boxes& out = boxes_[next_ / Casters::kLanes];
+        const std::size_t lane = next_++ % Casters::kLanes;
+        out.x0[lane] = next_below(static_cast<float>(box.x0)), out.x1[lane] = next_above(static_cast<float>(box.x1));
+        out.y0[lane] = next_below(static_cast<float>(box.y0)), out.y1[lane] = next_above(static_cast<float>(box.y1));
+        out.limit[lane] = static_cast<std::uint8_t>(perspective ? limit_of(nearest, true) : 0);
+        out.triangle[lane] = triangle;
+        out.segment[lane] = static_cast<std::uint16_t>(segment);
+        out.mixed[lane] = mixed;
+    }
+
+    void copy(const BoxWriter& from, std::size_t i) {
+        const Casters::Boxes& in = from.boxes_[i / Casters::kLanes];
+        Casters::Boxes& out = boxes_[next_ / Casters::kLanes];
+        const std::size_t was = i % Casters::kLanes, lane = next_++ % Casters::kLanes;
+        out.x0[lane] = in.x0[was], out.x1[lane] = in.x1[was], out.y0[lane] = in.y0[was], out.y1[lane] = in.y1[was];
+        out.limit[lane] = in.limit[was], out.triangle[lane] = in.triangle[was];
+        out.segment[lane] = in.segment[was], out.mixed[lane] = in.mixed[was];
+    }
+
+  private:
+    Casters::Boxes* boxes_;
+    std::size_t next_;
+};
+
+void clear(Casters::Extents& extents, std::size_t first) {
+    for (std::size_t lane = first; lane < Casters::kLanes; ++lane) {
+        extents.x0[lane] = extents.y0[lane] = INFINITY;
+        extents.x1[lane] = extents.y1[lane] = -INFINITY;
+        extents.limit[lane] = 0xff;
+    }
+}
+
+// Bounds of sixteen as one.
+void unite(const Casters::Extents& all, Casters::Extents& out, std::size_t lane) {
+    out.x0[lane] = *std::min_element(all.x0, all.x0 + Casters::kLanes);
+    out.x1[lane] = *std::max_element(all.x1, all.x1 + Casters::kLanes);
+    out.y0[lane] = *std::min_element(all.y0, all.y0 + Casters::kLanes);
+    out.y1[lane] = *std::max_element(all.y1, all.y1 + Casters::kLanes);
+    out.limit[lane] = *std::min_element(all.limit, all.limit + Casters::kLanes);
+}
+
+template <class T>
+std::vector<Casters::Extents> groups_of(const T* parts, std::size_t count) {
+    std::vector<Casters::Extents> groups((count + Casters::kLanes - 1) / Casters::kLanes);
+    if (!groups.empty()) clear(groups.back(), 0);
+    for (std::size_t i = 0; i < count; ++i) unite(parts[i], groups[i / Casters::kLanes], i % Casters::kLanes);
+    return groups;
 }
 
 // A little before the nearest of the triangle's depths, as rounding may put a sample there.
@@ -150,8 +199,7 @@ std::size_t most_boxes(const Part& part) {
     return part.triangle_count * static_cast<std::size_t>(part.moves ? part.segments : 1);
 }
 
-// Writes the part's boxes. Returns the end of them.
-Casters::Box* bound_part(const Casters& casters, const Part& part, Casters::Box* out) {
+void bound_part(const Casters& casters, const Part& part, BoxWriter& out) {
     const bool perspective = casters.view.perspective;
     const SeenPoints seen(*casters.world, part, casters.view);
     for (std::uint32_t triangle = part.first_triangle; triangle < part.first_triangle + part.triangle_count;
@@ -159,8 +207,6 @@ Casters::Box* bound_part(const Casters& casters, const Part& part, Casters::Box*
         const OpacityClass opacity = opacity_class(*casters.frame, triangle);
         if (opacity == OpacityClass::kClear) continue;
         for (int segment = 0; segment < (part.moves ? part.segments : 1); ++segment) {
-            Casters::Box like{
-                0, 0, 0, 0, triangle, static_cast<std::uint16_t>(segment), 0, opacity == OpacityClass::kMixed};
             ScreenBox box;
             float nearest = 0.0f;
             if (seen.simple()) {
@@ -172,40 +218,55 @@ Casters::Box* bound_part(const Casters& casters, const Part& part, Casters::Box*
                 nearest = nearest_depth(*least, *most);
                 box = screen_bounds(m, perspective ? kNearestToLight : 0.5, 1.0);
             }
-            like.limit = static_cast<std::uint8_t>(perspective ? limit_of(nearest, true) : 0);
-            out = take(box, perspective, like, out);
+            out.add(box, perspective, nearest, triangle, segment, opacity == OpacityClass::kMixed);
         }
     }
-    return out;
+}
+
+// Ranges of parts write where all before them leave room, and then what they wrote moves together: little memory is
+// touched that is not needed. Returns how many there are.
+std::size_t write_boxes(const Casters& casters, const std::vector<const Part*>& parts,
+                        const std::vector<std::size_t>& first, bool parallel) {
+    struct Written {
+        std::size_t begin = 0, end = 0;
+    };
+    std::vector<Written> written(parts.size());
+    for_ranges(parallel, parts.size(), [&](std::size_t begin, std::size_t end) {
+        // Two ranges do not share a cache line.
+        BoxWriter writer(casters.boxes.get(), (first[begin] + Casters::kLanes - 1) / Casters::kLanes * Casters::kLanes);
+        for (std::size_t i = begin; i < end; ++i) {
+            written[i].begin = writer.next();
+            bound_part(casters, *parts[i], writer);
+            written[i].end = writer.next();
+        }
+    });
+    BoxWriter together(casters.boxes.get(), 0);
+    for (const Written& range : written) {
+        if (together.next() == range.begin)
+            together = BoxWriter(casters.boxes.get(), range.end);
+        else
+            for (std::size_t i = range.begin; i < range.end; ++i) together.copy(together, i);
+    }
+    return together.next();
 }
 
 }  // namespace
 
 Casters make_casters(const WorldMotion& world, const Frame& frame, const LightView& view, bool parallel) {
-    Casters casters{&world, &frame, view, {}, nullptr, 0.0f};
-    std::vector<std::uint32_t> taken;
-    for (std::uint32_t i = 0; i < world.parts.size(); ++i)
-        if (!is_out_of_view(world.bounds[i], view)) taken.push_back(i);
-    // Each range of parts writes where all before it leave room, and then they move together: little memory is touched
-    // that is not needed.
-    std::vector<std::size_t> first(taken.size() + 1);
-    for (std::size_t i = 0; i < taken.size(); ++i) first[i + 1] = first[i] + most_boxes(world.parts[taken[i]]);
-    casters.room = std::make_unique_for_overwrite<Casters::Box[]>(first.back());
-    std::vector<std::span<Casters::Box>> written(taken.size());
-    for_ranges(parallel, taken.size(), [&](std::size_t begin, std::size_t end) {
-        Casters::Box* to = casters.room.get() + first[begin];
-        for (std::size_t i = begin; i < end; ++i) {
-            written[i] = {to, bound_part(casters, world.parts[taken[i]], to)};
-            to = written[i].data() + written[i].size();
-        }
-    });
-    Casters::Box* last = casters.room.get();
-    for (const std::span<Casters::Box> boxes : written)
-        last = boxes.data() == last ? last + boxes.size() : std::copy(boxes.begin(), boxes.end(), last);
-    casters.boxes = {casters.room.get(), last};
-    for (const Casters::Box& box : casters.boxes)
-        casters.extent =
-            std::max({casters.extent, std::abs(box.x0), std::abs(box.x1), std::abs(box.y0), std::abs(box.y1)});
+    Casters casters{&world, &frame, view, nullptr, 0, {}, {}};
+    std::vector<const Part*> parts;
+    std::vector<std::size_t> first{0};  // where each one's boxes may begin
+    for (std::size_t i = 0; i < world.parts.size(); ++i) {
+        if (is_out_of_view(world.bounds[i], view)) continue;
+        parts.push_back(&world.parts[i]);
+        first.push_back(first.back() + most_boxes(world.parts[i]) + Casters::kLanes);
+    }
+    casters.boxes = std::make_unique_for_overwrite<Casters::Boxes[]>(first.back() / Casters::kLanes + 1);
+    casters.count = static_cast<std::uint32_t>(write_boxes(casters, parts, first, parallel));
+    const std::size_t used = (casters.count + Casters::kLanes - 1) / Casters::kLanes;
+    if (casters.count % Casters::kLanes != 0) clear(casters.boxes[used - 1], casters.count % Casters::kLanes);
+    casters.groups = groups_of(casters.boxes.get(), used);
+    casters.groups_of_groups = groups_of(casters.groups.data(), casters.groups.size());
     return casters;
 }
 

@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <memory>
-#include <span>
+#include <vector>
 
 #include "frame/frame.h"
 #include "shade/world_motion.h"
@@ -53,20 +53,26 @@ inline int limit_of(float depth, bool perspective) {
 }
 
 struct Casters {
-    /// One motion segment of one triangle in the light's view: metres or tangents, y up.
-    struct Box {
-        float x0, x1, y0, y1;
-        std::uint32_t triangle;  ///< of the frame
-        std::uint16_t segment;
-        std::uint8_t limit;  ///< the least that holds a part of it
-        bool mixed;          ///< its opacity is to be asked: OpacityClass::kMixed
+    static constexpr int kLanes = 16;
+    /// Of sixteen boxes, or groups of boxes, in the light's view: metres or tangents, y up.
+    struct Extents {
+        float x0[kLanes], x1[kLanes], y0[kLanes], y1[kLanes];
+        std::uint8_t limit[kLanes];  ///< the least that holds a part of it
+    };
+    /// One motion segment each of sixteen triangles.
+    struct alignas(64) Boxes : Extents {
+        std::uint32_t triangle[kLanes];  ///< of the frame
+        std::uint16_t segment[kLanes];
+        bool mixed[kLanes];  ///< its opacity is to be asked: OpacityClass::kMixed
     };
     const WorldMotion* world;  ///< not owned, as `frame`
     const Frame* frame;        ///< asked for opacity
     LightView view;
-    std::span<const Box> boxes;
-    std::unique_ptr<Box[]> room;  ///< what `boxes` are of
-    float extent = 0.0f;          ///< of the boxes, from the middle
+    std::unique_ptr<Boxes[]> boxes;  ///< box i in lane i % kLanes of boxes[i / kLanes]; beyond the last one nothing
+    std::uint32_t count = 0;         ///< of boxes
+    /// A tree, as neighbours in the mesh lie near each other: of all boxes in each of `boxes` a lane, and of each of
+    /// these again.
+    std::vector<Extents> groups, groups_of_groups;
 };
 
 /// `parallel`: on all cores; false for calls from within a loop over cores that may make others wait for the result.

@@ -34,9 +34,6 @@ T* publish(std::atomic<T*>& place, std::unique_ptr<T> made) {
 
 struct ShadowMap::Page {
     std::array<Cell, kPageCells * kPageCells> cells;
-    ~Page() {
-        for (Cell& cell : cells) delete cell.list.load();
-    }
 };
 
 struct ShadowMap::Level {
@@ -54,6 +51,7 @@ ShadowMap::ShadowMap(const WorldMotion& world, const Frame& frame, const ShadowS
       frame_(frame),
       samples_(samples),
       store_(store),
+      find_(find_casters()),
       draw_(draw_shadow_cell()),
       view_(view),
       width_(width),
@@ -76,8 +74,6 @@ const Casters& ShadowMap::casters() const {
 
 void ShadowMap::make(bool parallel) const {
     casters_ = make_casters(world_, frame_, view_, parallel);
-    root_exponent_ =
-        view_.perspective ? -4 : std::clamp(std::ilogb(casters_.extent / kCellSize + 1e-30f) + 1, kFinest, kCoarsest);
 }
 
 int ShadowMap::exponent_of(float texel) const {
@@ -97,36 +93,6 @@ ShadowMap::Cell& ShadowMap::cell(Level& level, int cx, int cy) const {
     return page->cells[cy % kPageCells * kPageCells + cx % kPageCells];
 }
 
-// What may be seen in a cell is among what may be seen in the cell of the next level that holds it.
-void ShadowMap::find_boxes(int exponent, int limit, int cx, int cy, List& out) const {
-    const int middle = width_ / kCellSize / 2;
-    const float size = std::ldexp(static_cast<float>(kCellSize), exponent);
-    const float x0 = static_cast<float>(cx - middle) * size, y1 = static_cast<float>(middle - cy) * size;
-    const std::span<const Casters::Box> boxes = casters().boxes;
-    const auto take = [&](std::uint32_t i) {
-        const Casters::Box& box = boxes[i];
-        if (box.x0 <= x0 + size && box.x1 >= x0 && box.y0 <= y1 && box.y1 >= y1 - size) out.push_back(i);
-    };
-    if (exponent >= root_exponent_) {  // known since casters() was asked
-        out.clear();
-        for (std::uint32_t i = 0; i < boxes.size(); ++i)
-            if (boxes[i].limit <= limit) take(i);
-        return;
-    }
-    const int px = middle + ((cx - middle) >> 1), py = middle + ((cy - middle) >> 1);
-    const List& wider = list(exponent + 1, limit, px, py);
-    out.clear();
-    for (const std::uint32_t i : wider) take(i);
-}
-
-const ShadowMap::List& ShadowMap::list(int exponent, int limit, int cx, int cy) const {
-    Cell& here = cell(level(exponent, limit), cx, cy);
-    if (const List* known = here.list.load(std::memory_order_acquire)) return *known;
-    static thread_local List found;  // grows here; what is kept has no room to spare
-    find_boxes(exponent, limit, cx, cy, found);
-    return *publish<const List>(here.list, std::make_unique<const List>(found));
-}
-
 const float* ShadowMap::depths(int exponent, int limit, int cx, int cy) const {
     Cell& here = cell(level(exponent, limit), cx, cy);
     if (const float* known = store_.find(here.depths)) return known;
@@ -144,10 +110,14 @@ bool ShadowMap::is_empty(const float* depths) {
 
 // False if nothing is in the cell.
 bool ShadowMap::render(int exponent, int limit, int cx, int cy, float* bounds) const {
-    static thread_local List list;
-    find_boxes(exponent, limit, cx, cy, list);
-    if (list.empty()) return false;
+    const int middle = width_ / kCellSize / 2;
+    const float size = std::ldexp(static_cast<float>(kCellSize), exponent);
+    const float left = static_cast<float>(cx - middle) * size, top = static_cast<float>(middle - cy) * size;
+    static thread_local std::vector<std::uint32_t> room;
+    const std::size_t found = find_(casters(), {left, left + size, top - size, top, limit}, room);
+    if (found == 0) return false;
     static thread_local AlignedVector<float> depths(ShadowSamples::kPerCell);
+    const std::span<const std::uint32_t> list(room.data(), found);
     draw_({casters(), list, samples_, cx, cy, width_, std::ldexp(1.0f, -exponent)}, depths.data(), bounds);
     return std::any_of(bounds, bounds + ShadowSamples::kPerCell, [](float depth) { return depth < INFINITY; });
 }

@@ -12,7 +12,7 @@
 #include <mutex>
 #include <vector>
 
-#include "shade/casters.h"
+#include "shade/find_casters.h"
 #include "shade/shadow_cell_store.h"
 #include "shade/shadow_raster.h"
 
@@ -56,9 +56,7 @@ class ShadowMap {
     std::int64_t cells_rendered() const { return cells_rendered_; }
 
   private:
-    using List = std::vector<std::uint32_t>;  // into Casters::boxes
     struct Cell {
-        std::atomic<const List*> list{nullptr};  // of those in which finer ones lie
         ShadowCellStore::Cell depths;
         std::atomic<bool> empty{false};  // known to hold nothing
     };
@@ -69,20 +67,18 @@ class ShadowMap {
     const Casters& casters() const;
     Level& level(int exponent, int limit) const;
     Cell& cell(Level& level, int cx, int cy) const;
-    void find_boxes(int exponent, int limit, int cx, int cy, List& out) const;
-    const List& list(int exponent, int limit, int cx, int cy) const;
     bool render(int exponent, int limit, int cx, int cy, float* bounds) const;
 
     const WorldMotion& world_;
     const Frame& frame_;
     const ShadowSamples& samples_;
     ShadowCellStore& store_;
+    FindCasters find_;
     DrawShadowCell draw_;
     LightView view_;
     int width_, least_exponent_;
     mutable std::once_flag made_;
     mutable Casters casters_;
-    mutable int root_exponent_ = 0;
     std::unique_ptr<std::atomic<Level*>[]> levels_;
     mutable std::atomic<std::int64_t> cells_rendered_{0};
 };

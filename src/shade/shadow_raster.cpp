@@ -129,10 +129,12 @@ void draw_cell(const ShadowCellWork& work, float* depths, float* bounds) {
         for (int lane = 0; lane < kLanes; ++lane) list[lane] = work.list[begin + std::min(lane, count - 1)];
         set_up(work, list, setup);
         for (int lane = 0; lane < count; ++lane) {
-            const Casters::Box& box = work.casters.boxes[list[lane]];
-            const Part& part = world.parts[world.part_of[box.triangle]];
-            const Triangle T{setup,        lane,     static_cast<float>(part.segments), static_cast<float>(box.segment),
-                             box.triangle, box.mixed};
+            const Casters::Boxes& boxes = work.casters.boxes[list[lane] / kLanes];
+            const std::uint32_t at = list[lane] % kLanes, triangle = boxes.triangle[at];
+            const Part& part = world.parts[world.part_of[triangle]];
+            const Triangle T{
+                setup,    lane,           static_cast<float>(part.segments), static_cast<float>(boxes.segment[at]),
+                triangle, boxes.mixed[at]};
             if (part.moves)
                 perspective ? draw_triangle<true, true>(work, T, depths, bounds)
                             : draw_triangle<true, false>(work, T, depths, bounds);

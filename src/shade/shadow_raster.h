@@ -51,7 +51,7 @@ class ShadowSamples {
 /// A cell of a level and what may be seen in it.
 struct ShadowCellWork {
     const Casters& casters;
-    std::span<const std::uint32_t> list;  ///< into Casters::boxes, in any order
+    std::span<const std::uint32_t> list;  ///< numbers of boxes, in any order
     const ShadowSamples& samples;
     int cx, cy, width;  ///< the cell, and how many texels the level spans
     float scale;        ///< texels a unit of the casters' x and y; a power of two

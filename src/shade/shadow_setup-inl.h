@@ -47,14 +47,17 @@ HWY_INLINE Vec most_of(const Vec v[6]) {
     return hn::Max(hn::Max(hn::Max(v[0], v[1]), hn::Max(v[2], v[3])), hn::Max(v[4], v[5]));
 }
 
-// The boxes of the triangles in the cell: no texel less than Casters::Box says.
+// The boxes of the triangles in the cell: no texel less than Casters::Boxes says.
 HWY_INLINE void find_rects(F f, const ShadowCellWork& work, const std::uint32_t* list, int first, ShadowSetup& out) {
-    constexpr int kFloats = sizeof(Casters::Box) / sizeof(float);
-    static_assert(kFloats * sizeof(float) == sizeof(Casters::Box));
+    constexpr int kFloats = sizeof(Casters::Boxes) / sizeof(float);
+    static_assert(kFloats * sizeof(float) == sizeof(Casters::Boxes));
     constexpr float kSlack = 0x1p-12f;  // texels
     const I d;
-    const hn::Vec<I> index = hn::Mul(hn::BitCast(d, hn::LoadU(U(), list + first)), hn::Set(d, kFloats));
-    const Casters::Box* boxes = work.casters.boxes.data();
+    const hn::Vec<I> number = hn::BitCast(d, hn::LoadU(U(), list + first));
+    const hn::Vec<I> index = hn::Add(hn::Mul(hn::ShiftRight<4>(number), hn::Set(d, kFloats)),
+                                     hn::And(number, hn::Set(d, Casters::kLanes - 1)));
+    static_assert(Casters::kLanes == 16);
+    const Casters::Boxes& boxes = work.casters.boxes[0];
     const Vec scale = hn::Set(f, work.scale), size = hn::Set(f, static_cast<float>(kCellSize));
     const float half = 0.5f * static_cast<float>(work.width);
     const Vec left = hn::Set(f, static_cast<float>(work.cx * kCellSize) - half),
@@ -63,12 +66,12 @@ HWY_INLINE void find_rects(F f, const ShadowCellWork& work, const std::uint32_t*
         const Vec in_cell = hn::Add(from_edge, hn::Set(f, slack));
         return hn::ConvertTo(d, hn::Floor(hn::Min(hn::Max(in_cell, hn::Set(f, -1.0f)), size)));
     };
-    const auto texels = [&](const float& field) HWY_ATTR { return hn::Mul(hn::GatherIndex(f, &field, index), scale); };
+    const auto texels = [&](const float* field) HWY_ATTR { return hn::Mul(hn::GatherIndex(f, field, index), scale); };
     const hn::Vec<I> zero = hn::Zero(d), last = hn::Set(d, kCellSize - 1);
-    hn::Store(hn::Max(zero, texel(hn::Sub(texels(boxes->x0), left), -kSlack)), d, out.x0 + first);
-    hn::Store(hn::Min(last, texel(hn::Sub(texels(boxes->x1), left), kSlack)), d, out.x1 + first);
-    hn::Store(hn::Max(zero, texel(hn::Sub(top, texels(boxes->y1)), -kSlack)), d, out.y0 + first);
-    hn::Store(hn::Min(last, texel(hn::Sub(top, texels(boxes->y0)), kSlack)), d, out.y1 + first);
+    hn::Store(hn::Max(zero, texel(hn::Sub(texels(boxes.x0), left), -kSlack)), d, out.x0 + first);
+    hn::Store(hn::Min(last, texel(hn::Sub(texels(boxes.x1), left), kSlack)), d, out.x1 + first);
+    hn::Store(hn::Max(zero, texel(hn::Sub(top, texels(boxes.y1)), -kSlack)), d, out.y0 + first);
+    hn::Store(hn::Min(last, texel(hn::Sub(top, texels(boxes.y0)), kSlack)), d, out.y1 + first);
 }
 
 // Slopes of the sides and what lies between: the triangle does, whenever. Nothing is known of triangles that reach
@@ -110,10 +113,11 @@ struct ShadowCorners {
     HWY_NOINLINE void find(const ShadowCellWork& work, const std::uint32_t* list) {
         const WorldMotion& world = *work.casters.world;
         for (int lane = 0; lane < kLanes; ++lane) {
-            const Casters::Box& box = work.casters.boxes[list[lane]];
-            const Part& part = world.parts[world.part_of[box.triangle]];
-            const std::uint32_t* corner = &world.corners[3 * std::size_t{box.triangle}];
-            const std::uint32_t knot = box.segment * part.vertex_count, step = part.moves ? part.vertex_count : 0;
+            const Casters::Boxes& boxes = work.casters.boxes[list[lane] / kLanes];
+            const std::uint32_t at = list[lane] % kLanes, triangle = boxes.triangle[at];
+            const Part& part = world.parts[world.part_of[triangle]];
+            const std::uint32_t* corner = &world.corners[3 * std::size_t{triangle}];
+            const std::uint32_t knot = boxes.segment[at] * part.vertex_count, step = part.moves ? part.vertex_count : 0;
             for (int k = 0; k < 3; ++k) {
                 open[k][lane] = static_cast<std::int32_t>(corner[k] + knot);
                 close[k][lane] = static_cast<std::int32_t>(corner[k] + knot + step);

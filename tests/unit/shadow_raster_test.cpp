@@ -126,7 +126,7 @@ TEST(ShadowRaster, ACellHoldsWhatTheExactTestSeesOnEveryCpuTarget) {
             view.perspective = perspective;
             const Frame solid = solid_frame(world), exact = in_texels(world, view);
             const Casters casters = make_casters(world, solid, view, false);
-            std::vector<std::uint32_t> list(casters.boxes.size());
+            std::vector<std::uint32_t> list(casters.count);
             for (std::uint32_t i = 0; i < list.size(); ++i) list[i] = i;
             for (int cell = 0; cell < 4; ++cell) {
                 const int cx = cell % 2, cy = cell / 2;
