@@ -11,11 +11,10 @@
 #include "base/parallel.h"
 #include "bound/screen_bounds.h"
 #include "frame/opacity.h"
+#include "shade/bound_casters.h"
 
 namespace pentaprism {
 namespace {
-
-constexpr float kLargest = 1e12f;
 
 using Ranges = std::function<void(std::size_t, std::size_t)>;
 
@@ -56,7 +55,7 @@ bool is_usable(const MovingTriangle& m) {
     bool usable = true;
     for (int k = 0; k < 6; ++k)
         for (const float v : {m.x[k / 2][k % 2], m.y[k / 2][k % 2], m.z[k / 2][k % 2]})
-            usable = usable && std::abs(v) <= kLargest;
+            usable = usable && std::abs(v) <= kLargestOfCasters;
     return usable;
 }
 
@@ -66,24 +65,25 @@ class BoxWriter {
     BoxWriter(Casters::Boxes* boxes, std::size_t first) : boxes_(boxes), next_(first) {}
     std::size_t next() const { return next_; }
 
-    /// If something of the box is in view.
-    void add(const ScreenBox& box, bool perspective, float nearest, std::uint32_t triangle, int segment, bool mixed) {
-        if (box.empty()) return;
-        if (perspective && (box.x0 > kWidestTangent || box.x1 < -kWidestTangent || box.y0 > kWidestTangent ||
-                            box.y1 < -kWidestTangent))
+    /// If something of the rectangle is in view.
+    void add(const CasterBatch& batch, int in_batch, const LightView& view, const CasterBounds& bounds) {
+        const float x0 = bounds.x0[in_batch], x1 = bounds.x1[in_batch], y0 = bounds.y0[in_batch],
+                    y1 = bounds.y1[in_batch];
+        if (view.perspective &&
+            (x0 > kWidestTangent || x1 < -kWidestTangent || y0 > kWidestTangent || y1 < -kWidestTangent))
             return;
         Casters::Boxes& out = boxes_[next_ / Casters::kLanes];
         const std::size_t lane = next_++ % Casters::kLanes;
-        out.x0[lane] = next_below(static_cast<float>(box.x0)), out.x1[lane] = next_above(static_cast<float>(box.x1));
-        out.y0[lane] = next_below(static_cast<float>(box.y0)), out.y1[lane] = next_above(static_cast<float>(box.y1));
-        out.limit[lane] = static_cast<std::uint8_t>(perspective ? limit_of(nearest, true) : 0);
-        out.triangle[lane] = triangle;
-        out.segment[lane] = static_cast<std::uint16_t>(segment);
-        out.mixed[lane] = mixed;
+        out.x0[lane] = x0, out.x1[lane] = x1, out.y0[lane] = y0, out.y1[lane] = y1;
+        out.limit[lane] = static_cast<std::uint8_t>(view.perspective ? limit_of(bounds.nearest[in_batch], true) : 0);
+        out.triangle[lane] = batch.triangle[in_batch];
+        out.segment[lane] = batch.segment[in_batch];
+        out.mixed[lane] = batch.mixed[in_batch];
     }
 
-    void copy(const BoxWriter& from, std::size_t i) {
-        const Casters::Boxes& in = from.boxes_[i / Casters::kLanes];
+    /// Box i once more.
+    void copy(std::size_t i) {
+        const Casters::Boxes& in = boxes_[i / Casters::kLanes];
         Casters::Boxes& out = boxes_[next_ / Casters::kLanes];
         const std::size_t was = i % Casters::kLanes, lane = next_++ % Casters::kLanes;
         out.x0[lane] = in.x0[was], out.x1[lane] = in.x1[was], out.y0[lane] = in.y0[was], out.y1[lane] = in.y1[was];
@@ -121,106 +121,63 @@ std::vector<Casters::Extents> groups_of(const T* parts, std::size_t count) {
     return groups;
 }
 
-// A little before the nearest of the triangle's depths, as rounding may put a sample there.
-float nearest_depth(float nearest, float farthest) {
-    return nearest - kDepthRounding * std::max(std::abs(nearest), std::abs(farthest));
-}
-
-std::size_t knots_of(const Part& part) {
-    return part.moves ? static_cast<std::size_t>(part.segments) + 1 : 1;
-}
-
-// A part's points on the light's picture.
-class SeenPoints {
-  public:
-    SeenPoints(const WorldMotion& world, const Part& part, const LightView& view)
-        : world_(world), part_(part), perspective_(view.perspective) {
-        const std::size_t count = part.vertex_count * knots_of(part);
-        placed_.resize(count);
-        seen_.resize(count);
-        for (std::size_t i = 0; i < count; ++i) {
-            const glm::vec3 p = placed_[i] = view.place(world.points[part.first_point + i]);
-            const float w = perspective_ ? p.z : 1.0f, inverse = 1.0f / w;
-            seen_[i] = {p.x * inverse, p.y * inverse};
-            simple_ = simple_ && w >= kNearestToLight && std::abs(p.x) <= kLargest && std::abs(p.y) <= kLargest &&
-                      std::abs(p.z) <= kLargest;
+MovingTriangle moving_caster(const WorldMotion& world, const LightView& view, std::uint32_t triangle, int segment) {
+    const Part& part = world.parts[world.part_of[triangle]];
+    MovingTriangle m{};
+    for (int k = 0; k < 3; ++k)
+        for (int end = 0; end < 2; ++end) {
+            const std::size_t knot = part.moves ? static_cast<std::size_t>(segment + end) : 0;
+            const std::size_t at = world.corners[3 * std::size_t{triangle} + k] + knot * part.vertex_count;
+            const glm::vec3 p = view.place(world.points[at]);
+            m.x[k][end] = p.x, m.y[k][end] = p.y, m.z[k][end] = p.z;
+            m.w[k][end] = view.perspective ? p.z : 1.0f;
         }
-    }
-    /// Whether box() may be asked.
-    bool simple() const { return simple_; }
+    return m;
+}
 
-    // For triangles that are wholly before the light: with the lens closed a moving triangle lies between its six ends
-    // as they are seen. A box of its own for each triangle, as screen_bounds() makes it, costs five times as much.
-    ScreenBox box(std::uint32_t triangle, int segment, float& nearest) const {
-        float x0 = INFINITY, x1 = -INFINITY, y0 = INFINITY, y1 = -INFINITY, least = INFINITY, most = -INFINITY;
-        for (int k = 0; k < 3; ++k)
-            for (int end = 0; end < (part_.moves ? 2 : 1); ++end) {
-                const std::size_t at = point(triangle, k, segment + end);
-                const glm::vec2& p = seen_[at];
-                x0 = std::min(x0, p.x), x1 = std::max(x1, p.x);
-                y0 = std::min(y0, p.y), y1 = std::max(y1, p.y);
-                least = std::min(least, placed_[at].z), most = std::max(most, placed_[at].z);
-            }
-        nearest = nearest_depth(least, most);
-        // As in screen_bounds(), where |x| <= w * reach; a quarter more for the divisions here.
-        constexpr float kUnitRoundoff = 1.0f / 16777216.0f;
-        const float slack = 20.0f * kUnitRoundoff * (perspective_ ? most / least : 1.0f);
-        const float slack_x = slack * (32.0f + 2.0f * std::max(std::abs(x0), std::abs(x1)));
-        const float slack_y = slack * (32.0f + 2.0f * std::max(std::abs(y0), std::abs(y1)));
-        return {x0 - slack_x, x1 + slack_x, y0 - slack_y, y1 + slack_y};
-    }
+// One that may reach behind the light. False if nothing of it is seen.
+bool bound_any(const MovingTriangle& m, bool perspective, int lane, CasterBounds& out) {
+    if (!is_usable(m)) return false;
+    const ScreenBox box = screen_bounds(m, perspective ? kNearestToLight : 0.5, 1.0);
+    if (box.empty()) return false;
+    out.x0[lane] = next_below(static_cast<float>(box.x0)), out.x1[lane] = next_above(static_cast<float>(box.x1));
+    out.y0[lane] = next_below(static_cast<float>(box.y0)), out.y1[lane] = next_above(static_cast<float>(box.y1));
+    const auto [least, most] = std::minmax_element(&m.z[0][0], &m.z[0][0] + 6);
+    out.nearest[lane] = *least - kDepthRounding * std::max(std::abs(*least), std::abs(*most));
+    return true;
+}
 
-    MovingTriangle triangle(std::uint32_t triangle, int segment) const {
-        MovingTriangle m{};
-        for (int k = 0; k < 3; ++k)
-            for (int end = 0; end < 2; ++end) {
-                const glm::vec3& p = placed_[point(triangle, k, part_.moves ? segment + end : 0)];
-                m.x[k][end] = p.x, m.y[k][end] = p.y, m.z[k][end] = p.z;
-                m.w[k][end] = perspective_ ? p.z : 1.0f;
-            }
-        return m;
+void write_batch(const Casters& casters, const Part& part, CasterBatch& batch, BoxWriter& out) {
+    const BoundCasters bound = bound_casters();
+    CasterBounds bounds;
+    const std::uint32_t bounded = bound(*casters.world, part, casters.view, batch, bounds);
+    for (int lane = 0; lane < batch.count; ++lane) {
+        const bool known = (bounded >> lane & 1u) != 0;
+        if (known || bound_any(moving_caster(*casters.world, casters.view, batch.triangle[lane], batch.segment[lane]),
+                               casters.view.perspective, lane, bounds))
+            out.add(batch, lane, casters.view, bounds);
     }
-
-  private:
-    std::size_t point(std::uint32_t triangle, int corner, int knot) const {
-        return world_.corners[3 * std::size_t{triangle} + corner] - part_.first_point +
-               static_cast<std::size_t>(knot) * part_.vertex_count;
-    }
-
-    const WorldMotion& world_;
-    const Part& part_;
-    bool perspective_;
-    std::vector<glm::vec3> placed_;
-    std::vector<glm::vec2> seen_;  // x and y over w
-    bool simple_ = true;
-};
+    batch.count = 0;
+}
 
 std::size_t most_boxes(const Part& part) {
     return part.triangle_count * static_cast<std::size_t>(part.moves ? part.segments : 1);
 }
 
 void bound_part(const Casters& casters, const Part& part, BoxWriter& out) {
-    const bool perspective = casters.view.perspective;
-    const SeenPoints seen(*casters.world, part, casters.view);
+    CasterBatch batch;
     for (std::uint32_t triangle = part.first_triangle; triangle < part.first_triangle + part.triangle_count;
          ++triangle) {
         const OpacityClass opacity = opacity_class(*casters.frame, triangle);
         if (opacity == OpacityClass::kClear) continue;
         for (int segment = 0; segment < (part.moves ? part.segments : 1); ++segment) {
-            ScreenBox box;
-            float nearest = 0.0f;
-            if (seen.simple()) {
-                box = seen.box(triangle, segment, nearest);
-            } else {
-                const MovingTriangle m = seen.triangle(triangle, segment);
-                if (!is_usable(m)) continue;
-                const auto [least, most] = std::minmax_element(&m.z[0][0], &m.z[0][0] + 6);
-                nearest = nearest_depth(*least, *most);
-                box = screen_bounds(m, perspective ? kNearestToLight : 0.5, 1.0);
-            }
-            out.add(box, perspective, nearest, triangle, segment, opacity == OpacityClass::kMixed);
+            batch.triangle[batch.count] = triangle;
+            batch.segment[batch.count] = static_cast<std::uint16_t>(segment);
+            batch.mixed[batch.count] = opacity == OpacityClass::kMixed;
+            if (++batch.count == CasterBatch::kLanes) write_batch(casters, part, batch, out);
         }
     }
+    if (batch.count > 0) write_batch(casters, part, batch, out);
 }
 
 // Ranges of parts write where all before them leave room, and then what they wrote moves together: little memory is
@@ -245,7 +202,7 @@ std::size_t write_boxes(const Casters& casters, const std::vector<const Part*>& 
         if (together.next() == range.begin)
             together = BoxWriter(casters.boxes.get(), range.end);
         else
-            for (std::size_t i = range.begin; i < range.end; ++i) together.copy(together, i);
+            for (std::size_t i = range.begin; i < range.end; ++i) together.copy(i);
     }
     return together.next();
 }

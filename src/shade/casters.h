@@ -33,6 +33,9 @@ struct LightView {
 /// A perspective view ends at this tangent, right, left, up and down: a face of a cube (1) with room around it.
 inline constexpr float kWidestTangent = 1.5f;
 
+/// What lies farther, to a side or in depth, is left out; metres.
+inline constexpr float kLargestOfCasters = 1e12f;
+
 /// A perspective light sees nothing nearer; metres.
 inline constexpr float kNearestToLight = 1e-3f;
 

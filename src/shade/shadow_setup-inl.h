@@ -8,7 +8,7 @@
 #define PENTAPRISM_SHADOW_SETUP_INL_H
 #endif
 
-#include "cover/lanes-inl.h"
+#include "shade/light_view-inl.h"
 #include "shade/shadow_raster.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -125,23 +125,6 @@ struct ShadowCorners {
         }
     }
 };
-
-struct PlacedPoints {
-    Vec x, y, z;
-};
-
-// LightView::place() in lanes.
-HWY_INLINE PlacedPoints placed(F f, const LightView& view, std::span<const glm::vec3> points, hn::Vec<I> at) {
-    const hn::Vec<I> first = hn::Add(hn::Add(at, at), at);
-    Vec p[3];
-    for (int axis = 0; axis < 3; ++axis)
-        p[axis] = hn::Sub(hn::GatherIndex(f, &points[0][axis], first), hn::Set(f, view.position[axis]));
-    const auto along = [&](const glm::vec3& axis) HWY_ATTR {
-        const Vec xy = hn::Add(hn::Mul(p[0], hn::Set(f, axis.x)), hn::Mul(p[1], hn::Set(f, axis.y)));
-        return hn::Add(xy, hn::Mul(p[2], hn::Set(f, axis.z)));
-    };
-    return {along(view.axes[0]), along(view.axes[1]), along(view.axes[2])};
-}
 
 // `list`: kLanes of the cell's boxes.
 HWY_NOINLINE void set_up(const ShadowCellWork& work, const std::uint32_t* list, ShadowSetup& out) {
