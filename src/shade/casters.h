@@ -23,7 +23,7 @@ struct LightView {
     glm::mat3 axes{1.0f};      ///< columns: right, up, forward; orthonormal
 
     /// A point of the world in this view: right, up, depth. What casts and what receives are placed alike, to the bit,
-    /// here, in lanes (shadow_setup-inl.h) and on the card (shade/shadow_map.glsl).
+    /// here, in lanes (light_view-inl.h) and on the card (shadow_lookup.glsl).
     glm::vec3 place(const glm::vec3& point) const {
         const glm::vec3 p = point - position;
         return {glm::dot(p, axes[0]), glm::dot(p, axes[1]), glm::dot(p, axes[2])};
