@@ -46,8 +46,9 @@ std::size_t find(const Casters& casters, const CasterQuery& query, std::vector<s
     };
     const auto visit_boxes = [&](std::size_t i) HWY_ATTR {
         if (out.size() < count + kLanes) out.resize(2 * (count + kLanes));
+        // Even if none is: a branch that is guessed wrong would wait for memory.
         const std::uint32_t bits = touching(casters.boxes[i], query);
-        if (bits != 0) count += write_lanes(static_cast<std::uint32_t>(i * kLanes), bits, out.data() + count);
+        count += write_lanes(static_cast<std::uint32_t>(i * kLanes), bits, out.data() + count);
     };
     const auto visit_group = [&](std::size_t i)
                                  HWY_ATTR { for_each(touching(casters.groups[i], query), i * kLanes, visit_boxes); };
