@@ -38,7 +38,13 @@ class TileShader {
     struct Run {
         const ShadedTriangle& triangle;
         std::uint32_t number;
-        std::span<const std::uint32_t> places;
+        SampleRun samples;
+    };
+    /// Samples in another order than that of TileSamples.
+    struct Reordered {
+        std::vector<std::uint32_t> order, places;
+        std::vector<Float4> xyuv;
+        std::vector<float> t;
     };
     /// A cell of the triangle in hand, and the side from which it is seen.
     struct SharedCell {
@@ -53,16 +59,15 @@ class TileShader {
         return place - skipped_;
     }
     void go_to_block(std::uint32_t block);
-    std::span<const std::uint32_t> by_pixel(std::span<const std::uint32_t> places,
-                                            std::span<const std::uint16_t> indices);
+    SampleRun by_pixel(const SampleRun& samples, std::span<const std::uint16_t> indices);
     void shade_pixels(const Run& run, const Tile& tile, TileShade& out);
     void find_cells(const Run& run, TileShade& out);
     void shade_cells(const Run& run, TileShade& out);
     WaitingPoint& add_point(const Run& run, const glm::vec3& barycentrics, bool front, const ShadingCell& cell,
                             TileShade& out);
     void shade_background(const SampleVector* samples, const Tile& tile, TileShade& out);
-    int quarter_of(std::size_t sample) const {
-        const int quarter = static_cast<int>(seen_.time(sample) * QuarterColors::kQuarters);
+    int quarter_of(float t) const {
+        const int quarter = static_cast<int>(t * QuarterColors::kQuarters);
         return by_quarters_ ? std::min(quarter, QuarterColors::kQuarters - 1) : 0;
     }
 
@@ -77,7 +82,7 @@ class TileShader {
     SeenSamples seen_;
     std::int64_t shaded_ = 0;
     std::vector<SampleVector> room_;
-    std::vector<std::uint32_t> by_pixel_;
+    Reordered by_pixel_;
     std::vector<SharedCell> cells_;
     std::vector<std::uint32_t> cell_table_;  // open addressing: index into cells_ + 1, or 0
 };
