@@ -61,14 +61,10 @@ std::uint32_t seed_of(const Tile& tile, std::uint32_t pixel, std::uint32_t salt)
 }  // namespace
 
 void TileShader::start(const SampleTable& samples, const Hits& hits) {
-    hits_ = &hits;
     per_block_ = static_cast<std::uint32_t>(samples.slots()) * kLanes;
-    go_to_block(0);
-}
-
-void TileShader::go_to_block(std::uint32_t block) {
-    block_begin_ = block * per_block_;
-    skipped_ = block_begin_ - hits_->first(static_cast<int>(block));
+    reciprocal_ = ((std::uint64_t{1} << kReciprocalBits) + per_block_ - 1) / per_block_;
+    for (std::uint32_t block = 0; block < kBlocksPerCell; ++block)
+        skipped_[block] = block * per_block_ - hits.first(static_cast<int>(block));
 }
 
 std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& samples, const Tile& tile,
@@ -86,6 +82,7 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
 
     const auto indices = samples.indices_of_cell(tile.cell_x(), tile.cell_y());
     const bool sorted = TileSamples::is_by_pixel(samples);
+    const float blur_share = scene.blur_share(samples.spp());
     // Of what does not blur, pixels are the cells; there the mean of the samples is better than the middle.
     const bool in_cells = scene.options().rate == ShadingRate::kDecoupled;
     const int blocks_per_chunk = std::max(1, kSamplesPerChunk / (kLanes * samples.slots()));
@@ -94,7 +91,7 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
         if (scene.has_background()) shade_background(vectors, tile, out);
         for (std::size_t i = 0; i < samples_.triangle_count(); ++i) {
             const std::uint32_t triangle = samples_.triangle(i);
-            const ShadedTriangle shaded(scene, triangle, samples.spp());
+            const ShadedTriangle shaded(scene, triangle, blur_share);
             const bool cells = in_cells && (roughly || !shaded.is_sharp());
             const SampleRun seen = samples_.samples(i);
             const Run run{shaded, triangle, cells || sorted ? seen : by_pixel(seen, indices)};
@@ -138,7 +135,7 @@ SampleRun TileShader::by_pixel(const SampleRun& samples, std::span<const std::ui
     Reordered& out = by_pixel_;
     out.order.resize(places.size());
     for (std::size_t begin = 0; begin < places.size();) {
-        const std::uint32_t block_end = (places[begin] / per_block_ + 1) * per_block_;
+        const std::uint32_t block_end = (block_of(places[begin]) + 1) * per_block_;
         std::size_t ends[kLanes + 1] = {}, end = begin;  // of each pixel's samples; at first their number
         for (; end < places.size() && places[end] < block_end; ++end) ++ends[places[end] % kLanes + 1];
         std::partial_sum(std::begin(ends), std::end(ends), std::begin(ends));
@@ -169,7 +166,7 @@ SampleRun TileShader::by_pixel(const SampleRun& samples, std::span<const std::ui
 void TileShader::shade_pixels(const Run& run, const Tile& tile, TileShade& out) {
     const bool each = scene_->options().rate == ShadingRate::kSample;
     for (std::size_t begin = 0; begin < run.samples.places.size();) {
-        const std::uint32_t block = run.samples.places[begin] / per_block_, lane = run.samples.places[begin] % kLanes;
+        const std::uint32_t block = block_of(run.samples.places[begin]), lane = run.samples.places[begin] % kLanes;
         const auto is_here = [&](std::uint32_t place) {
             return place - block * per_block_ < per_block_ && place % kLanes == lane;
         };
@@ -237,7 +234,7 @@ void TileShader::shade_background(const SampleVector* samples, const Tile& tile,
     const CellCentre centre = cell_centre(scene_->frame().view, tile.cell_x(), tile.cell_y());
     const std::span<const std::uint32_t> misses = samples_.misses();
     for (std::size_t i = 0; i < misses.size();) {
-        const std::uint32_t end = (misses[i] / per_block_ + 1) * per_block_;
+        const std::uint32_t end = (block_of(misses[i]) + 1) * per_block_;
         glm::vec4 sums[kLanes] = {};  // and how many
         std::uint32_t points[kLanes];
         for (; i < misses.size() && misses[i] < end; ++i) {

@@ -4,6 +4,7 @@
 // 2010; here the mean instead of their last hit), or for each sample. Nothing hidden is ever shaded.
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -53,12 +54,12 @@ class TileShader {
         QuarterColors colors;
     };
     void start(const SampleTable& samples, const Hits& hits);
-    /// Of a sample its entry in Hits, by its place (TileSamples). Places come block by block.
-    std::uint32_t entry(std::uint32_t place) {
-        if (place - block_begin_ >= per_block_) go_to_block(place / per_block_);
-        return place - skipped_;
+    /// Of a sample its block, by its place (TileSamples), without a division.
+    std::uint32_t block_of(std::uint32_t place) const {
+        return static_cast<std::uint32_t>(place * reciprocal_ >> kReciprocalBits);
     }
-    void go_to_block(std::uint32_t block);
+    /// The same: its entry in Hits.
+    std::uint32_t entry(std::uint32_t place) const { return place - skipped_[block_of(place)]; }
     SampleRun by_pixel(const SampleRun& samples, std::span<const std::uint16_t> indices);
     void shade_pixels(const Run& run, const Tile& tile, TileShade& out);
     void find_cells(const Run& run, TileShade& out);
@@ -72,11 +73,12 @@ class TileShader {
     }
 
     const ShadingScene* scene_ = nullptr;
-    const Hits* hits_ = nullptr;
-    bool by_quarters_ = false;       // colours change while the shutter is open
-    std::uint32_t per_block_ = 0;    // samples of a block
-    std::uint32_t block_begin_ = 0;  // place of the first sample of the block in hand
-    std::uint32_t skipped_ = 0;      // samples of the cell before that block which have no entry in Hits
+    bool by_quarters_ = false;     // colours change while the shutter is open
+    std::uint32_t per_block_ = 0;  // samples of a block
+    // Places are below 2^22, and blocks of 2^4 to 2^16 samples: the quotient is exact.
+    static constexpr int kReciprocalBits = 42;
+    std::uint64_t reciprocal_ = 0;                         // 2^42 / per_block_, rounded up
+    std::array<std::uint32_t, kBlocksPerCell> skipped_{};  // samples of the cell before each block without an entry
     WaitingPoints waiting_;
     TileSamples samples_;
     SeenSamples seen_;
