@@ -83,8 +83,37 @@ void read(const BlockSamples& samples, int first, int count, Run& run, BlockSums
         }
 }
 
-// The run's sums for the row of pixels `row`, added to the totals.
-void add(const Run& run, int count, int row, int lane, double (*total)[kSums][kLanes]) {
+using D = hn::CappedTag<double, 8>;
+
+// What becomes of a run's sums: the first run's begin the totals, and the last one's end them.
+struct Totals {
+    bool begins, ends;
+    double scale;  // of the whole numbers
+    double (*total)[3][kSums][kLanes];
+    std::int64_t (*fixed)[3][kSums][kLanes];
+};
+
+HWY_INLINE void add_to(const Totals& totals, const float* sums, int row, int column, int c, int lane) {
+    constexpr double kMost = 0x1p21 * 0x1p32;  // tile_sums.cpp
+    const D d;
+    const hn::Rebind<float, D> floats;
+    const hn::RebindToSigned<D> whole;
+    const auto scale = hn::Set(d, totals.scale), most = hn::Set(d, kMost);
+    for (int i = 0; i < kWidth; i += static_cast<int>(hn::Lanes(d))) {
+        double* total = &totals.total[row][column][c][lane + i];
+        auto sum = hn::PromoteTo(d, hn::Load(floats, sums + i));
+        if (!totals.begins) sum = hn::Add(hn::Load(d, total), sum);
+        if (totals.ends) {
+            const auto fixed = hn::Min(hn::Max(hn::Mul(sum, scale), hn::Neg(most)), most);
+            hn::Store(hn::ConvertTo(whole, hn::Round(fixed)), whole, &totals.fixed[row][column][c][lane + i]);
+        } else {
+            hn::Store(sum, d, total);
+        }
+    }
+}
+
+// The run's sums for the row of pixels `row`.
+void add(const Run& run, int count, int row, int lane, const Totals& totals) {
     const F f;
     Vec sums[3][kSums];
     for (auto& of_column : sums)
@@ -103,33 +132,22 @@ void add(const Run& run, int count, int row, int lane, double (*total)[kSums][kL
     for (int column = 0; column < 3; ++column)
         for (int c = 0; c < kSums; ++c) {
             hn::Store(sums[column][c], f, here);
-            for (int k = 0; k < kWidth; ++k) total[column][c][lane + k] += static_cast<double>(here[k]);
+            add_to(totals, here, row, column, c, lane);
         }
 }
 
 }  // namespace
 
 void filter_samples(const BlockSamples& samples, BlockSums& out) {
-    constexpr double kMost = 0x1p21, kUnit = 0x1p32;  // tile_sums.cpp
     Run run;
-    alignas(64) double total[3][3][kSums][kLanes] = {};
+    alignas(64) double total[3][3][kSums][kLanes];
     std::fill_n(out.depth, kLanes, std::numeric_limits<float>::infinity());
     for (int first = 0; first < samples.slots; first += kFloatRun) {
         const int count = std::min(kFloatRun, samples.slots - first);
         read(samples, first, count, run, out);
+        const Totals totals{first == 0, first + count == samples.slots, samples.share * 0x1p32, total, out.fixed};
         for (int row = 0; row < 3; ++row)
-            for (int lane = 0; lane < kLanes; lane += kWidth) add(run, count, row, lane, total[row]);
-    }
-    const hn::CappedTag<double, 8> d;
-    const auto share = hn::Set(d, samples.share), most = hn::Set(d, kMost), unit = hn::Set(d, kUnit);
-    const double* from = &total[0][0][0][0];
-    std::int64_t* to = &out.fixed[0][0][0][0];
-    constexpr int kCount = 9 * kSums * kLanes;
-    const hn::RebindToSigned<decltype(d)> d64;
-    for (int i = 0; i < kCount; i += static_cast<int>(hn::Lanes(d))) {
-        const auto sum = hn::Mul(hn::Load(d, from + i), share);
-        const auto fixed = hn::Mul(hn::Min(hn::Max(sum, hn::Neg(most)), most), unit);
-        hn::Store(hn::ConvertTo(d64, hn::Round(fixed)), d64, to + i);
+            for (int lane = 0; lane < kLanes; lane += kWidth) add(run, count, row, lane, totals);
     }
 }
 

@@ -35,45 +35,47 @@ HWY_INLINE Vec product_difference(Vec a, Vec b, Vec c, Vec d) {
     return hn::Sub(hn::Mul(a, b), hn::Mul(c, d));
 }
 
-// Barycentrics and side of those of the samples whose time belongs to the triangle's segment.
+// Barycentrics and side of the samples whose time belongs to the triangle's segment.
+HWY_INLINE void project(F f, const SeenSamples::Batch& batch, const LocalTriangle& T, int first, Vec hx, Vec hy, Vec u,
+                        Vec v) {
+    const I d;
+    const Vec zero = hn::Zero(f), one = hn::Set(f, 1.0f);
+    const Vec along = hn::Mul(hn::LoadU(f, batch.t + first), hn::Set(f, T.segments));
+    const Vec segment = hn::Min(hn::ConvertTo(f, hn::ConvertTo(d, along)), hn::Set(f, T.segments - 1.0f));
+    const Mask here = hn::Eq(segment, hn::Set(f, T.segment));
+    const Vec tau = hn::Sub(along, hn::Set(f, T.segment));
+    Vec x[3], y[3];
+    for (int k = 0; k < 3; ++k) {
+        const auto moved = [&](float q, float change)
+                               HWY_ATTR { return plus_product(hn::Set(f, q), tau, hn::Set(f, change)); };
+        const Vec w = moved(T.qw[k], T.dw[k]), c = moved(T.qc[k], T.dc[k]);
+        x[k] = hn::Sub(plus_product(moved(T.qx[k], T.dx[k]), u, c), hn::Mul(hx, w));
+        y[k] = hn::Sub(plus_product(moved(T.qy[k], T.dy[k]), v, c), hn::Mul(hy, w));
+    }
+    const Vec e[3] = {product_difference(x[1], y[2], x[2], y[1]), product_difference(x[2], y[0], x[0], y[2]),
+                      product_difference(x[0], y[1], x[1], y[0])};
+    const Vec sum = hn::Add(hn::Add(e[0], e[1]), e[2]);
+    // Rounding, and slivers' samples, may lie just outside.
+    const Vec over_sum = hn::Div(one, sum);
+    Vec inside[3];
+    for (int k = 0; k < 3; ++k) inside[k] = hn::Max(hn::Mul(e[k], over_sum), zero);
+    const Vec total = hn::Add(hn::Add(inside[0], inside[1]), inside[2]), over_total = hn::Div(one, total);
+    const Mask usable = hn::And(hn::IsFinite(total), hn::Gt(total, zero));
+    for (int k = 0; k < 3; ++k)
+        hn::BlendedStore(hn::IfThenElse(usable, hn::Mul(inside[k], over_total), hn::Set(f, 1.0f / 3.0f)), here, f,
+                         batch.b[k] + first);
+    const U unsigned_lanes;
+    const UVec side =
+        hn::IfThenElseZero(hn::RebindMask(unsigned_lanes, hn::Gt(sum, zero)), hn::Set(unsigned_lanes, CellKey::kFront));
+    hn::BlendedStore(side, hn::RebindMask(unsigned_lanes, here), unsigned_lanes, batch.kind + first);
+}
+
 void project(const SeenSamples::Batch& batch) {
     const F f;
-    const I d;
-    const LocalTriangle& T = *batch.triangle;
-    const Vec zero = hn::Zero(f), one = hn::Set(f, 1.0f), segments = hn::Set(f, T.segments),
-              last = hn::Set(f, T.segments - 1.0f);
     for (int first = 0; first < kLanes; first += kWidth) {
-        const Vec hx = hn::Load(f, batch.x + first), hy = hn::Load(f, batch.y + first);
-        const Vec u = hn::Load(f, batch.u + first), v = hn::Load(f, batch.v + first);
-        const Vec t = hn::Load(f, batch.t + first);
-        const Vec along = hn::Mul(t, segments);
-        const Vec segment = hn::Min(hn::ConvertTo(f, hn::ConvertTo(d, along)), last);
-        const Mask here = hn::Eq(segment, hn::Set(f, T.segment));
-        const Vec tau = hn::Sub(along, hn::Set(f, T.segment));
-        Vec x[3], y[3];
-        for (int k = 0; k < 3; ++k) {
-            const auto moved = [&](float q, float change)
-                                   HWY_ATTR { return plus_product(hn::Set(f, q), tau, hn::Set(f, change)); };
-            const Vec w = moved(T.qw[k], T.dw[k]), c = moved(T.qc[k], T.dc[k]);
-            x[k] = hn::Sub(plus_product(moved(T.qx[k], T.dx[k]), u, c), hn::Mul(hx, w));
-            y[k] = hn::Sub(plus_product(moved(T.qy[k], T.dy[k]), v, c), hn::Mul(hy, w));
-        }
-        const Vec e[3] = {product_difference(x[1], y[2], x[2], y[1]), product_difference(x[2], y[0], x[0], y[2]),
-                          product_difference(x[0], y[1], x[1], y[0])};
-        const Vec sum = hn::Add(hn::Add(e[0], e[1]), e[2]);
-        // Rounding, and slivers' samples, may lie just outside.
-        const Vec over_sum = hn::Div(one, sum);
-        Vec inside[3];
-        for (int k = 0; k < 3; ++k) inside[k] = hn::Max(hn::Mul(e[k], over_sum), zero);
-        const Vec total = hn::Add(hn::Add(inside[0], inside[1]), inside[2]), over_total = hn::Div(one, total);
-        const Mask usable = hn::And(hn::IsFinite(total), hn::Gt(total, zero));
-        for (int k = 0; k < 3; ++k)
-            hn::BlendedStore(hn::IfThenElse(usable, hn::Mul(inside[k], over_total), hn::Set(f, 1.0f / 3.0f)), here, f,
-                             batch.b[k] + first);
-        const U unsigned_lanes;
-        const UVec side = hn::IfThenElseZero(hn::RebindMask(unsigned_lanes, hn::Gt(sum, zero)),
-                                             hn::Set(unsigned_lanes, CellKey::kFront));
-        hn::BlendedStore(side, hn::RebindMask(unsigned_lanes, here), unsigned_lanes, batch.kind + first);
+        Vec x, y, u, v;
+        hn::LoadInterleaved4(f, reinterpret_cast<const float*>(batch.xyuv + first), x, y, u, v);
+        for (int i = 0; i < batch.triangle_count; ++i) project(f, batch, *batch.triangles[i], first, x, y, u, v);
     }
 }
 
@@ -148,7 +150,7 @@ void find_cells(const SeenSamples::Batch& batch) {
                                  hn::Or(hn::ShiftLeft<4>(longer), hn::ShiftLeft<7>(direction)));
         const auto take = hn::RebindMask(d, usable);
         const IVec alone = hn::Or(side, hn::BitCast(d, hn::Set(U(), CellKey::kAlone)));
-        const IVec index = hn::BitCast(d, hn::LoadU(U(), batch.indices + first));
+        const IVec index = hn::BitCast(d, hn::LoadU(U(), batch.places + first));
         hn::Store(hn::BitCast(U(), hn::IfThenElse(take, kind, alone)), U(), batch.kind + first);
         hn::Store(hn::BitCast(U(), hn::IfThenElse(take, hn::Or(hn::ShiftLeft<16>(column), row), index)), U(),
                   batch.place + first);
@@ -157,11 +159,9 @@ void find_cells(const SeenSamples::Batch& batch) {
 
 }  // namespace
 
-void see_batch(const SeenSamples::Batch& batch, bool cells) {
-    if (cells)
-        find_cells(batch);
-    else
-        project(batch);
+void see_batch(const SeenSamples::Batch& batch) {
+    project(batch);
+    if (batch.cells != nullptr) find_cells(batch);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -174,7 +174,7 @@ HWY_AFTER_NAMESPACE();
 namespace pentaprism {
 namespace {
 
-using SeeBatch = void (*)(const SeenSamples::Batch&, bool);
+using SeeBatch = void (*)(const SeenSamples::Batch&);
 
 SeeBatch see_batch() {
     PENTAPRISM_RETURN_FOR_CPU(see_batch);
@@ -212,11 +212,10 @@ ShadingCell CellKey::cell() const {
     return cell;
 }
 
-void SeenSamples::start(const Frame& frame, const CellCentre& centre, const SampleVector* samples, int least_level) {
+void SeenSamples::start(const Frame& frame, const CellCentre& centre, int least_level) {
     least_level_ = least_level;
     frame_ = &frame;
     centre_ = centre;
-    samples_ = samples;
     see_batch_ = see_batch();
 }
 
@@ -226,48 +225,40 @@ const LocalTriangle& SeenSamples::local(int segment) {
     return locals_[segment];
 }
 
-// Copied one by one: gathers of five arrays take twice as long.
-void SeenSamples::take(std::span<const std::uint32_t> indices) {
-    indices_.assign(indices.begin(), indices.end());
-    indices_.resize((indices.size() + kLanes - 1) / kLanes * kLanes, indices.back());
-    for (AlignedVector<float>* coordinate : {&x_, &y_, &u_, &v_, &t_}) coordinate->resize(indices_.size());
-    float *x = x_.data(), *y = y_.data(), *u = u_.data(), *v = v_.data(), *t = t_.data();
-    const SampleVector* samples = samples_;
-    for (const std::uint32_t index : indices_) {
-        const SampleVector& from = samples[index / kLanes];
-        const std::uint32_t lane = index % kLanes;
-        *x++ = from.x[lane], *y++ = from.y[lane];
-        *u++ = from.u[lane], *v++ = from.v[lane], *t++ = from.t[lane];
-    }
-}
-
-void SeenSamples::see(std::uint32_t triangle, std::span<const std::uint32_t> indices, const CellTriangle* cells) {
+void SeenSamples::see(std::uint32_t triangle, const SampleRun& samples, const CellTriangle* cells) {
     triangle_ = triangle;
     const Part& part = frame_->parts[frame_->part_of[triangle]];
     const int segments = part.moves ? part.segments : 1;
     ready_.assign(segments, 0);
     if (static_cast<int>(locals_.size()) < segments) locals_.resize(segments);
 
-    take(indices);
-    const std::size_t padded = indices_.size();
-    for (auto& b : b_) b.resize(padded);
-    kind_.resize(padded);
-    place_.resize(padded);
-    for (std::size_t first = 0; first < padded; first += kLanes) {
-        Batch batch{
-            &x_[first],       &y_[first],    &u_[first], &v_[first],   &t_[first],
-            &indices_[first], nullptr,       cells,      least_level_, {&b_[0][first], &b_[1][first], &b_[2][first]},
-            &kind_[first],    &place_[first]};
+    const std::size_t count = samples.places.size(), padded = (count + kLanes - 1) / kLanes * kLanes;
+    if (kind_.size() < padded) {
+        for (auto& b : b_) b.resize(padded);
+        kind_.resize(padded);
+        place_.resize(padded);
+    }
+    const LocalTriangle* triangles[kLanes];
+    for (std::size_t first = 0; first < count; first += kLanes) {
+        Batch batch{samples.xyuv + first,
+                    samples.t + first,
+                    samples.places.data() + first,
+                    triangles,
+                    0,
+                    cells,
+                    least_level_,
+                    {&b_[0][first], &b_[1][first], &b_[2][first]},
+                    &kind_[first],
+                    &place_[first]};
         std::uint64_t done = 0;  // segments: at most 64 (camera/settings.cpp)
-        for (int lane = 0; lane < (segments == 1 ? 1 : kLanes); ++lane) {
-            const int segment =
-                std::min(static_cast<int>(t_[first + lane] * static_cast<float>(segments)), segments - 1);
+        const int lanes = segments == 1 ? 1 : static_cast<int>(std::min<std::size_t>(kLanes, count - first));
+        for (int lane = 0; lane < lanes; ++lane) {
+            const int segment = std::min(static_cast<int>(batch.t[lane] * static_cast<float>(segments)), segments - 1);
             if ((done >> segment & 1) != 0) continue;
             done |= std::uint64_t{1} << segment;
-            batch.triangle = &local(segment);
-            see_batch_(batch, false);
+            triangles[batch.triangle_count++] = &local(segment);
         }
-        if (cells != nullptr) see_batch_(batch, true);
+        see_batch_(batch);
     }
 }
 

@@ -8,11 +8,11 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <span>
 #include <vector>
 
 #include "base/aligned.h"
 #include "bound/local_triangle.h"
+#include "shade/tile_samples.h"
 
 namespace pentaprism {
 
@@ -57,21 +57,22 @@ class SeenSamples {
   public:
     /// For samples of one cell of the picture's grid. All must outlive what follows. No side of a shading cell is less
     /// than 2^least_level pixels; at most 6.
-    void start(const Frame& frame, const CellCentre& centre, const SampleVector* samples, int least_level = 0);
+    void start(const Frame& frame, const CellCentre& centre, int least_level = 0);
 
-    /// `indices`: of samples that hit the triangle, vector * kLanes + lane. `cells`: null if no cells are wanted.
-    void see(std::uint32_t triangle, std::span<const std::uint32_t> indices, const CellTriangle* cells);
+    /// `samples` hit the triangle, and outlive what follows. `cells`: null if no cells are wanted.
+    void see(std::uint32_t triangle, const SampleRun& samples, const CellTriangle* cells);
 
     /// Of the i-th of them. Barycentrics lie inside the triangle; of one that is seen edge-on they are its middle's.
     glm::vec3 barycentrics(std::size_t i) const { return {b_[0][i], b_[1][i], b_[2][i]}; }
     CellKey key(std::size_t i) const { return {kind_[i], place_[i]}; }
-    float time(std::size_t i) const { return t_[i]; }
 
-    // Sixteen of them, for the vector code; all arrays are aligned.
+    // Sixteen of them, for the vector code; the arrays it writes are aligned.
     struct Batch {
-        const float *x, *y, *u, *v, *t;
-        const std::uint32_t* indices;
-        const LocalTriangle* triangle;
+        const Float4* xyuv;
+        const float* t;
+        const std::uint32_t* places;
+        const LocalTriangle* const* triangles;  // of the segments to which their times belong
+        int triangle_count;
         const CellTriangle* cells;
         int least_level;
         float* b[3];
@@ -80,20 +81,17 @@ class SeenSamples {
 
   private:
     const LocalTriangle& local(int segment);
-    void take(std::span<const std::uint32_t> indices);
 
-    void (*see_batch_)(const Batch&, bool) = nullptr;  // of the CPU target
+    void (*see_batch_)(const Batch&) = nullptr;  // of the CPU target
 
     const Frame* frame_ = nullptr;
     CellCentre centre_{0.0f, 0.0f};
-    const SampleVector* samples_ = nullptr;
     int least_level_ = 0;
     std::uint32_t triangle_ = 0;
     std::vector<LocalTriangle> locals_;  // of each segment
     std::vector<std::uint8_t> ready_;
-    AlignedVector<float> x_, y_, u_, v_, t_;  // the samples, in whole vectors
     AlignedVector<float> b_[3];
-    AlignedVector<std::uint32_t> kind_, place_, indices_;
+    AlignedVector<std::uint32_t> kind_, place_;
 };
 
 }  // namespace pentaprism

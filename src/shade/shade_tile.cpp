@@ -61,14 +61,10 @@ std::uint32_t seed_of(const Tile& tile, std::uint32_t pixel, std::uint32_t salt)
 }  // namespace
 
 void TileShader::start(const SampleTable& samples, const Hits& hits) {
-    hits_ = &hits;
     per_block_ = static_cast<std::uint32_t>(samples.slots()) * kLanes;
-    go_to_block(0);
-}
-
-void TileShader::go_to_block(std::uint32_t block) {
-    block_begin_ = block * per_block_;
-    skipped_ = block_begin_ - hits_->first(static_cast<int>(block));
+    reciprocal_ = ((std::uint64_t{1} << kReciprocalBits) + per_block_ - 1) / per_block_;
+    for (std::uint32_t block = 0; block < kBlocksPerCell; ++block)
+        skipped_[block] = block * per_block_ - hits.first(static_cast<int>(block));
 }
 
 std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& samples, const Tile& tile,
@@ -82,24 +78,25 @@ std::int64_t TileShader::shade(const ShadingScene& scene, const SampleTable& sam
     out.point_of_sample.assign(hits.triangle.size(), kBackground);
     out.colors.clear();
     const SampleVector* vectors = samples.cell(tile.cell_x(), tile.cell_y(), room_).data();
-    seen_.start(scene.frame(), cell_centre(scene.frame().view, tile.cell_x(), tile.cell_y()), vectors,
+    seen_.start(scene.frame(), cell_centre(scene.frame().view, tile.cell_x(), tile.cell_y()),
                 roughly ? kRoughLevel : 0);
 
     const auto indices = samples.indices_of_cell(tile.cell_x(), tile.cell_y());
     const bool sorted = TileSamples::is_by_pixel(samples);
+    const float blur_share = scene.blur_share(samples.spp());
     // Of what does not blur, pixels are the cells; there the mean of the samples is better than the middle.
     const bool in_cells = scene.options().rate == ShadingRate::kDecoupled;
     const int blocks_per_chunk = std::max(1, kSamplesPerChunk / (kLanes * samples.slots()));
     for (int block = 0; block < kBlocksPerCell; block += blocks_per_chunk) {
-        samples_.collect(samples, tile, hits, block, std::min(block + blocks_per_chunk, kBlocksPerCell));
+        samples_.collect(samples, vectors, tile, hits, block, std::min(block + blocks_per_chunk, kBlocksPerCell));
         if (scene.has_background()) shade_background(vectors, tile, out);
         for (std::size_t i = 0; i < samples_.triangle_count(); ++i) {
             const std::uint32_t triangle = samples_.triangle(i);
-            const ShadedTriangle shaded(scene, triangle, samples.spp());
+            const ShadedTriangle shaded(scene, triangle, blur_share);
             const bool cells = in_cells && (roughly || !shaded.is_sharp());
-            const std::span<const std::uint32_t> places = samples_.places(i);
-            const Run run{shaded, triangle, cells || sorted ? places : by_pixel(places, indices)};
-            seen_.see(triangle, run.places, cells ? &shaded.cells() : nullptr);
+            const SampleRun seen = samples_.samples(i);
+            const Run run{shaded, triangle, cells || sorted ? seen : by_pixel(seen, indices)};
+            seen_.see(triangle, run.samples, cells ? &shaded.cells() : nullptr);
             if (cells) {
                 find_cells(run, out);
                 shade_cells(run, out);
@@ -120,7 +117,7 @@ void TileShader::shade_misses(const ShadingScene& scene, const SampleTable& samp
     const SampleVector* vectors = samples.cell(tile.cell_x(), tile.cell_y(), room_).data();
     const int blocks_per_chunk = std::max(1, kSamplesPerChunk / (kLanes * samples.slots()));
     for (int block = 0; block < kBlocksPerCell; block += blocks_per_chunk) {
-        samples_.collect(samples, tile, hits, block, std::min(block + blocks_per_chunk, kBlocksPerCell));
+        samples_.collect(samples, vectors, tile, hits, block, std::min(block + blocks_per_chunk, kBlocksPerCell));
         shade_background(vectors, tile, out);
     }
 }
@@ -134,18 +131,19 @@ WaitingPoint& TileShader::add_point(const Run& run, const glm::vec3& barycentric
 }
 
 // The samples pixel by pixel in index order, which says what is looked up of shadows: the same on any backend.
-std::span<const std::uint32_t> TileShader::by_pixel(std::span<const std::uint32_t> places,
-                                                    std::span<const std::uint16_t> indices) {
-    by_pixel_.resize(places.size());
+SampleRun TileShader::by_pixel(const SampleRun& samples, std::span<const std::uint16_t> indices) {
+    const std::span<const std::uint32_t> places = samples.places;
+    Reordered& out = by_pixel_;
+    out.order.resize(places.size());
     for (std::size_t begin = 0; begin < places.size();) {
-        const std::uint32_t block_end = (places[begin] / per_block_ + 1) * per_block_;
+        const std::uint32_t block_end = (block_of(places[begin]) + 1) * per_block_;
         std::size_t ends[kLanes + 1] = {}, end = begin;  // of each pixel's samples; at first their number
         for (; end < places.size() && places[end] < block_end; ++end) ++ends[places[end] % kLanes + 1];
         std::partial_sum(std::begin(ends), std::end(ends), std::begin(ends));
-        const auto first = by_pixel_.begin() + static_cast<std::ptrdiff_t>(begin);
+        const auto first = out.order.begin() + static_cast<std::ptrdiff_t>(begin);
         for (std::size_t i = begin; i < end; ++i)
-            first[static_cast<std::ptrdiff_t>(ends[places[i] % kLanes]++)] = places[i];
-        const auto by_index = [&](std::uint32_t a, std::uint32_t b) { return indices[a] < indices[b]; };
+            first[static_cast<std::ptrdiff_t>(ends[places[i] % kLanes]++)] = static_cast<std::uint32_t>(i);
+        const auto by_index = [&](std::uint32_t a, std::uint32_t b) { return indices[places[a]] < indices[places[b]]; };
         for (int lane = 0; lane < kLanes; ++lane) {
             const auto from = first + static_cast<std::ptrdiff_t>(lane == 0 ? 0 : ends[lane - 1]);
             const auto to = first + static_cast<std::ptrdiff_t>(ends[lane]);
@@ -153,27 +151,36 @@ std::span<const std::uint32_t> TileShader::by_pixel(std::span<const std::uint32_
         }
         begin = end;
     }
-    return by_pixel_;
+    out.places.resize(places.size() + kLanes);
+    out.xyuv.resize(places.size() + kLanes);
+    out.t.resize(places.size() + kLanes);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const std::uint32_t from = out.order[i];
+        out.places[i] = places[from];
+        out.xyuv[i] = samples.xyuv[from];
+        out.t[i] = samples.t[from];
+    }
+    return {std::span(out.places).first(places.size()), out.xyuv.data(), out.t.data()};
 }
 
 // The samples of one pixel share a point, or none do; those that see the back are another point.
 void TileShader::shade_pixels(const Run& run, const Tile& tile, TileShade& out) {
     const bool each = scene_->options().rate == ShadingRate::kSample;
-    for (std::size_t begin = 0; begin < run.places.size();) {
-        const std::uint32_t block = run.places[begin] / per_block_, lane = run.places[begin] % kLanes;
+    for (std::size_t begin = 0; begin < run.samples.places.size();) {
+        const std::uint32_t block = block_of(run.samples.places[begin]), lane = run.samples.places[begin] % kLanes;
         const auto is_here = [&](std::uint32_t place) {
             return place - block * per_block_ < per_block_ && place % kLanes == lane;
         };
         PointSamples points[2];
-        const std::size_t last = each ? begin + 1 : run.places.size();
-        for (; begin < last && is_here(run.places[begin]); ++begin) {
+        const std::size_t last = each ? begin + 1 : run.samples.places.size();
+        for (; begin < last && is_here(run.samples.places[begin]); ++begin) {
             const glm::vec3 b = seen_.barycentrics(begin);
             PointSamples& point = points[seen_.key(begin).front()];
             point.sum += b;
             ++point.count;
-            const int quarter = quarter_of(begin);
+            const int quarter = quarter_of(run.samples.t[begin]);
             point.quarter[quarter].add(b);
-            out.point_of_sample[entry(run.places[begin])] = point.colors.at(quarter, out);
+            out.point_of_sample[entry(run.samples.places[begin])] = point.colors.at(quarter, out);
         }
         for (int front = 0; front < 2; ++front) {
             const PointSamples& point = points[front];
@@ -191,9 +198,9 @@ void TileShader::shade_pixels(const Run& run, const Tile& tile, TileShade& out) 
 void TileShader::find_cells(const Run& run, TileShade& out) {
     cells_.clear();
     std::size_t size = 16;
-    while (size < 2 * run.places.size()) size *= 2;
+    while (size < 2 * run.samples.places.size()) size *= 2;
     cell_table_.assign(size, 0u);
-    for (std::size_t i = 0; i < run.places.size(); ++i) {
+    for (std::size_t i = 0; i < run.samples.places.size(); ++i) {
         const CellKey key = seen_.key(i);
         const std::uint64_t whole = std::uint64_t{key.kind} << 32 | key.place;
         std::size_t at = static_cast<std::size_t>(whole * 0x9e3779b97f4a7c15ull >> 40) & (size - 1);
@@ -202,7 +209,8 @@ void TileShader::find_cells(const Run& run, TileShade& out) {
             cells_.push_back({key, i, {}});
             cell_table_[at] = static_cast<std::uint32_t>(cells_.size());
         }
-        out.point_of_sample[entry(run.places[i])] = cells_[cell_table_[at] - 1].colors.at(quarter_of(i), out);
+        out.point_of_sample[entry(run.samples.places[i])] =
+            cells_[cell_table_[at] - 1].colors.at(quarter_of(run.samples.t[i]), out);
     }
 }
 
@@ -227,7 +235,7 @@ void TileShader::shade_background(const SampleVector* samples, const Tile& tile,
     const CellCentre centre = cell_centre(scene_->frame().view, tile.cell_x(), tile.cell_y());
     const std::span<const std::uint32_t> misses = samples_.misses();
     for (std::size_t i = 0; i < misses.size();) {
-        const std::uint32_t end = (misses[i] / per_block_ + 1) * per_block_;
+        const std::uint32_t end = (block_of(misses[i]) + 1) * per_block_;
         glm::vec4 sums[kLanes] = {};  // and how many
         std::uint32_t points[kLanes];
         for (; i < misses.size() && misses[i] < end; ++i) {

@@ -4,6 +4,7 @@
 // 2010; here the mean instead of their last hit), or for each sample. Nothing hidden is ever shaded.
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -38,7 +39,13 @@ class TileShader {
     struct Run {
         const ShadedTriangle& triangle;
         std::uint32_t number;
-        std::span<const std::uint32_t> places;
+        SampleRun samples;
+    };
+    /// Samples in another order than that of TileSamples.
+    struct Reordered {
+        std::vector<std::uint32_t> order, places;
+        std::vector<Float4> xyuv;
+        std::vector<float> t;
     };
     /// A cell of the triangle in hand, and the side from which it is seen.
     struct SharedCell {
@@ -47,37 +54,37 @@ class TileShader {
         QuarterColors colors;
     };
     void start(const SampleTable& samples, const Hits& hits);
-    /// Of a sample its entry in Hits, by its place (TileSamples). Places come block by block.
-    std::uint32_t entry(std::uint32_t place) {
-        if (place - block_begin_ >= per_block_) go_to_block(place / per_block_);
-        return place - skipped_;
+    /// Of a sample its block, by its place (TileSamples), without a division.
+    std::uint32_t block_of(std::uint32_t place) const {
+        return static_cast<std::uint32_t>(place * reciprocal_ >> kReciprocalBits);
     }
-    void go_to_block(std::uint32_t block);
-    std::span<const std::uint32_t> by_pixel(std::span<const std::uint32_t> places,
-                                            std::span<const std::uint16_t> indices);
+    /// The same: its entry in Hits.
+    std::uint32_t entry(std::uint32_t place) const { return place - skipped_[block_of(place)]; }
+    SampleRun by_pixel(const SampleRun& samples, std::span<const std::uint16_t> indices);
     void shade_pixels(const Run& run, const Tile& tile, TileShade& out);
     void find_cells(const Run& run, TileShade& out);
     void shade_cells(const Run& run, TileShade& out);
     WaitingPoint& add_point(const Run& run, const glm::vec3& barycentrics, bool front, const ShadingCell& cell,
                             TileShade& out);
     void shade_background(const SampleVector* samples, const Tile& tile, TileShade& out);
-    int quarter_of(std::size_t sample) const {
-        const int quarter = static_cast<int>(seen_.time(sample) * QuarterColors::kQuarters);
+    int quarter_of(float t) const {
+        const int quarter = static_cast<int>(t * QuarterColors::kQuarters);
         return by_quarters_ ? std::min(quarter, QuarterColors::kQuarters - 1) : 0;
     }
 
     const ShadingScene* scene_ = nullptr;
-    const Hits* hits_ = nullptr;
-    bool by_quarters_ = false;       // colours change while the shutter is open
-    std::uint32_t per_block_ = 0;    // samples of a block
-    std::uint32_t block_begin_ = 0;  // place of the first sample of the block in hand
-    std::uint32_t skipped_ = 0;      // samples of the cell before that block which have no entry in Hits
+    bool by_quarters_ = false;     // colours change while the shutter is open
+    std::uint32_t per_block_ = 0;  // samples of a block
+    // Places are below 2^22, and blocks of 2^4 to 2^16 samples: the quotient is exact.
+    static constexpr int kReciprocalBits = 42;
+    std::uint64_t reciprocal_ = 0;                         // 2^42 / per_block_, rounded up
+    std::array<std::uint32_t, kBlocksPerCell> skipped_{};  // samples of the cell before each block without an entry
     WaitingPoints waiting_;
     TileSamples samples_;
     SeenSamples seen_;
     std::int64_t shaded_ = 0;
     std::vector<SampleVector> room_;
-    std::vector<std::uint32_t> by_pixel_;
+    Reordered by_pixel_;
     std::vector<SharedCell> cells_;
     std::vector<std::uint32_t> cell_table_;  // open addressing: index into cells_ + 1, or 0
 };

@@ -13,20 +13,30 @@ namespace {
 // Cosine between a facet and the normals at its corners: up to here it stands for a smooth surface, from here not.
 constexpr float kSmooth = 0.5f, kSpread = 0.25f;
 
-template <typename T>
-T interpolate(const std::vector<T>& values, const std::array<std::uint32_t, 3>& vertices, const glm::vec3& b) {
-    return b.x * values[vertices[0]] + b.y * values[vertices[1]] + b.z * values[vertices[2]];
+Float4 widened(const glm::vec3& v) {
+    return Float4{v.x, v.y, v.z, 0.0f};
+}
+Float4 widened(const glm::vec4& v) {
+    return Float4{v.x, v.y, v.z, v.w};
+}
+glm::vec3 first_three(const Float4& v) {
+    return {v[0], v[1], v[2]};
+}
+
+Float4 interpolate(const Float4 corners[3], const glm::vec3& b) {
+    return splat(b.x) * corners[0] + splat(b.y) * corners[1] + splat(b.z) * corners[2];
 }
 
 }  // namespace
 
-ShadedTriangle::ShadedTriangle(const ShadingScene& scene, std::uint32_t triangle, int spp)
+ShadedTriangle::ShadedTriangle(const ShadingScene& scene, std::uint32_t triangle, float blur_share)
     : scene_(scene),
       triangle_(triangle),
-      blur_share_(scene.blur_share(spp)),
+      blur_share_(blur_share),
       part_(scene.part_of(triangle)),
+      piece_(scene.frame().pieces.empty() ? nullptr : scene.frame().pieces[triangle].corner),
       vertices_(scene.frame().vertices(triangle)) {
-    if (part_.material->textured || scene.options().rate == ShadingRate::kDecoupled) project(triangle);
+    if (part_.material->textured || scene.options().rate == ShadingRate::kDecoupled) project();
     const glm::vec3 &a = part_.positions[vertices_[0]], &b = part_.positions[vertices_[1]],
                     &c = part_.positions[vertices_[2]];
     face_normal_ = normalized_or(glm::cross(b - a, c - a), glm::vec3(0.0f));
@@ -37,19 +47,57 @@ ShadedTriangle::ShadedTriangle(const ShadingScene& scene, std::uint32_t triangle
         least = std::min(least, glm::dot(part_.normals[from], face_normal_));
     }
     smoothness_ = std::clamp((least - kSpread) / (kSmooth - kSpread), 0.0f, 1.0f);
+    read_attributes();
+    if (part_.material->textured) set_up_textures();
+}
+
+void ShadedTriangle::read_attributes() {
+    const auto& colors = part_.primitive->colors;
+    for (int i = 0; i < 3; ++i) {
+        const std::uint32_t vertex = vertices_[i];
+        corners_.position[i] = widened(part_.positions[vertex]);
+        corners_.normal[i] = widened(part_.normals[vertex]);
+        if (!part_.tangents.empty()) corners_.tangent[i] = widened(part_.tangents[vertex]);
+        if (!colors.empty()) corners_.color[i] = widened(colors[vertex]);
+    }
+}
+
+void ShadedTriangle::set_up_textures() {
+    for (int i = 0; i < 3; ++i) {
+        const auto uv = [&](int set) {
+            const std::vector<glm::vec2>& uvs = part_.primitive->texcoords[set];
+            return uvs.empty() ? glm::vec2(0.0f) : uvs[vertices_[i]];
+        };
+        const glm::vec2 first = uv(0), second = uv(1);
+        corners_.uv[i] = Float4{first.x, first.y, second.x, second.y};
+    }
+    Float4 own[3];  // at the corners of the triangle itself
+    for (int i = 0; i < 3; ++i)
+        own[i] = piece_ ? interpolate(corners_.uv, in_source(glm::vec3(i == 0, i == 1, i == 2))) : corners_.uv[i];
+    for (int set = 0; set < 2; ++set) {
+        const auto uv = [&](int i) { return glm::dvec2(own[i][2 * set], own[i][2 * set + 1]); };
+        uv_edges_[set][0] = uv(1) - uv(0);
+        uv_edges_[set][1] = uv(2) - uv(0);
+    }
+}
+
+inline glm::vec3 ShadedTriangle::in_source(const glm::vec3& b) const {
+    if (!piece_) return b;
+    const glm::vec2 p = b.x * piece_[0] + b.y * piece_[1] + b.z * piece_[2];
+    return {1.0f - p.x - p.y, p.x, p.y};
 }
 
 // Barycentrics are w * M^-1 * (gx, gy, 1), where M has the corners (x, y, w) as columns; so their change over the
 // screen is w * (column - barycentrics * sum of the column). In double: x and y are the whole picture's, the triangle
 // may be tiny.
-void ShadedTriangle::project(std::uint32_t triangle) {
+void ShadedTriangle::project() {
     const Frame& frame = scene_.frame();
-    const int segments = frame.parts[frame.part_of[triangle]].segments;
+    const int segments = frame.parts[frame.part_of[triangle_]].segments;
     const int segment = segments / 2;  // the one that holds t = 1/2
     const double s = 0.5 * segments - segment;
-    const MovingTriangle middle = moving_triangle(frame, triangle, segment);
-    const MovingTriangle first = segment == 0 ? middle : moving_triangle(frame, triangle, 0);
-    const MovingTriangle last = segments == 1 ? middle : moving_triangle(frame, triangle, segments - 1);
+    const MovingTriangle middle = moving_triangle(frame, triangle_, segment);
+    const MovingTriangle first = segment == 0 ? middle : moving_triangle(frame, triangle_, 0);
+    const MovingTriangle last = segments == 1 ? middle : moving_triangle(frame, triangle_, segments - 1);
     const auto between = [s](const float ends[2]) { return ends[0] + (static_cast<double>(ends[1]) - ends[0]) * s; };
     glm::dvec3* corner = projection_.corner;
     for (int i = 0; i < 3; ++i) {
@@ -73,6 +121,8 @@ void ShadedTriangle::project(std::uint32_t triangle) {
     projection_.by_x = scale * glm::dvec3(rows[0].x, rows[1].x, rows[2].x);
     projection_.by_y = scale * glm::dvec3(rows[0].y, rows[1].y, rows[2].y);
     projection_.by_1 = scale * glm::dvec3(rows[0].z, rows[1].z, rows[2].z);
+    projection_.sum_x = projection_.by_x.x + projection_.by_x.y + projection_.by_x.z;
+    projection_.sum_y = projection_.by_y.x + projection_.by_y.y + projection_.by_y.z;
 }
 
 bool ShadedTriangle::is_sharp() const {
@@ -83,40 +133,31 @@ bool ShadedTriangle::is_sharp() const {
 
 // One evaluation is filtered over its cell (variance 1/12 each way) and over its share of the shutter (1/12) and of the
 // lens disk (1/4 each way).
-TextureFootprint ShadedTriangle::footprint(const glm::vec3& barycentrics, int set, const ShadingCell& cell) const {
-    const std::vector<glm::vec2>& uvs = part_.primitive->texcoords[set];
-    if (uvs.empty()) return {};
+void ShadedTriangle::add_footprints(const glm::vec3& barycentrics, const ShadingCell& cell,
+                                    TextureFootprint out[2]) const {
     const glm::dvec3 b(barycentrics);
     const glm::dvec3* corner = projection_.corner;
     const glm::dvec3 point = b.x * corner[0] + b.y * corner[1] + b.z * corner[2];
-    if (!(point.z > 0.0) || scene_.options().texture_filter == TextureFilter::kOff) return {};
-    const glm::dvec3 dx =
-        point.z * (projection_.by_x - b * (projection_.by_x.x + projection_.by_x.y + projection_.by_x.z));
-    const glm::dvec3 dy =
-        point.z * (projection_.by_y - b * (projection_.by_y.x + projection_.by_y.y + projection_.by_y.z));
-    const Frame& frame = scene_.frame();
-    const auto uv = [&](int k) {
-        if (frame.pieces.empty()) return glm::dvec2(uvs[vertices_[k]]);
-        return glm::dvec2(interpolate(uvs, vertices_, frame.in_source(triangle_, glm::vec3(k == 0, k == 1, k == 2))));
-    };
-    const glm::dvec2 edge1 = uv(1) - uv(0), edge2 = uv(2) - uv(0);
-    const glm::vec2 by_x(dx.y * edge1 + dx.z * edge2), by_y(dy.y * edge1 + dy.z * edge2);
-
+    if (!(point.z > 0.0) || scene_.options().texture_filter == TextureFilter::kOff) return;
+    const glm::dvec3 dx = point.z * (projection_.by_x - b * projection_.sum_x);
+    const glm::dvec3 dy = point.z * (projection_.by_y - b * projection_.sum_y);
     const glm::dvec3 motion = b.x * projection_.motion[0] + b.y * projection_.motion[1] + b.z * projection_.motion[2];
     const glm::vec2 velocity((glm::dvec2(motion) - motion.z / point.z * glm::dvec2(point)) / point.z);
     const float coc = static_cast<float>(glm::dot(b, projection_.coc) / point.z);
-    const float ratio = static_cast<float>(frame.view.lens.ratio);
-
-    TextureFootprint footprint;
-    footprint.add(by_x * cell.along.x + by_y * cell.along.y, 1.0f / 12.0f);
-    footprint.add(by_x * cell.across.x + by_y * cell.across.y, 1.0f / 12.0f);
-    if (scene_.options().texture_filter == TextureFilter::kPixel) return footprint;
-    const float share = blur_share_;
-    const float lens = 0.25f * coc * coc * share;
-    footprint.add(by_x, lens);
-    footprint.add(by_y, lens * ratio * ratio);
-    footprint.add(by_x * velocity.x + by_y * velocity.y, share / 12.0f);
-    return footprint;
+    const float ratio = static_cast<float>(scene_.frame().view.lens.ratio);
+    const float share = blur_share_, lens = 0.25f * coc * coc * share;
+    for (int set = 0; set < 2; ++set) {
+        if (part_.primitive->texcoords[set].empty()) continue;
+        const glm::dvec2* edges = uv_edges_[set];
+        const glm::vec2 by_x(dx.y * edges[0] + dx.z * edges[1]), by_y(dy.y * edges[0] + dy.z * edges[1]);
+        TextureFootprint& footprint = out[set];
+        footprint.add(by_x * cell.along.x + by_y * cell.along.y, 1.0f / 12.0f);
+        footprint.add(by_x * cell.across.x + by_y * cell.across.y, 1.0f / 12.0f);
+        if (scene_.options().texture_filter == TextureFilter::kPixel) continue;
+        footprint.add(by_x, lens);
+        footprint.add(by_y, lens * ratio * ratio);
+        footprint.add(by_x * velocity.x + by_y * velocity.y, share / 12.0f);
+    }
 }
 
 namespace {
@@ -135,8 +176,8 @@ glm::vec3 inside(const glm::dvec3& over_w) {
 // a cell can be long; a place beside it is as good while it is on the triangle that was cut.
 glm::vec3 ShadedTriangle::on_surface(const glm::dvec3& over_w) const {
     const double sum = over_w.x + over_w.y + over_w.z;
-    if (!scene_.frame().pieces.empty() && sum > 0.0) {
-        const glm::vec3 b((1.0 / sum) * over_w), source = scene_.frame().in_source(triangle_, b);
+    if (piece_ && sum > 0.0) {
+        const glm::vec3 b((1.0 / sum) * over_w), source = in_source(b);
         if (source.x >= 0.0f && source.y >= 0.0f && source.z >= 0.0f) return b;
     }
     return inside(over_w);
@@ -166,19 +207,21 @@ float ShadedTriangle::bulge(const glm::vec3& b, bool front) const {
 }
 
 SurfacePoint ShadedTriangle::surface(const glm::vec3& barycentrics, bool front, const ShadingCell& cell) const {
-    const Primitive& primitive = *part_.primitive;
-    const glm::vec3 b = scene_.frame().in_source(triangle_, barycentrics);  // of vertices_
+    const glm::vec3 b = in_source(barycentrics);
     SurfacePoint point;
-    if (part_.material->textured)
-        for (int set = 0; set < 2; ++set) {
-            if (primitive.texcoords[set].empty()) continue;
-            point.uv[set] = interpolate(primitive.texcoords[set], vertices_, b);
-            point.footprint[set] = footprint(barycentrics, set, cell);
-        }
-    if (!primitive.colors.empty()) point.color = glm::vec3(interpolate(primitive.colors, vertices_, b));
-    point.position = interpolate(part_.positions, vertices_, b);
-    point.normal = interpolate(part_.normals, vertices_, b);
-    if (!part_.tangents.empty()) point.tangent = interpolate(part_.tangents, vertices_, b);
+    if (part_.material->textured) {
+        const Float4 uv = interpolate(corners_.uv, b);
+        point.uv[0] = {uv[0], uv[1]};
+        point.uv[1] = {uv[2], uv[3]};
+        add_footprints(barycentrics, cell, point.footprint);
+    }
+    if (!part_.primitive->colors.empty()) point.color = first_three(interpolate(corners_.color, b));
+    point.position = first_three(interpolate(corners_.position, b));
+    point.normal = first_three(interpolate(corners_.normal, b));
+    if (!part_.tangents.empty()) {
+        const Float4 tangent = interpolate(corners_.tangent, b);
+        point.tangent = {tangent[0], tangent[1], tangent[2], tangent[3]};
+    }
     point.has_tangent = !part_.tangents.empty();
     point.face = front ? face_normal_ : -face_normal_;
     point.front = front;

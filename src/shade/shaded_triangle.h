@@ -7,8 +7,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
-#include <vector>
 
+#include "base/float4.h"
 #include "shade/seen_samples.h"
 #include "shade/shading_scene.h"
 #include "shade/surface_point.h"
@@ -17,8 +17,8 @@ namespace pentaprism {
 
 class ShadedTriangle {
   public:
-    /// `spp`: samples per pixel of the picture.
-    ShadedTriangle(const ShadingScene& scene, std::uint32_t triangle, int spp);
+    /// `blur_share`: ShadingScene::blur_share() of the picture.
+    ShadedTriangle(const ShadingScene& scene, std::uint32_t triangle, float blur_share);
 
     /// The point with these barycentrics (inside the triangle, sum 1) seen from the front or the back. Its textures are
     /// averaged over the cell's sides.
@@ -45,20 +45,33 @@ class ShadedTriangle {
     struct Projection {
         glm::dvec3 corner[3];         // x, y, w
         glm::dvec3 by_x, by_y, by_1;  // columns of the inverse of the corners' matrix: barycentrics over w
+        double sum_x, sum_y;          // of the first two columns
         glm::dvec3 motion[3];         // of each corner over the whole shutter
         glm::dvec3 coc;               // c of each corner
     };
-    void project(std::uint32_t triangle);
+    /// Attributes of vertices_, those that there are.
+    struct Attributes {
+        Float4 position[3], normal[3], tangent[3], color[3];
+        Float4 uv[3];  // of both sets
+    };
+    void project();
+    void read_attributes();
+    void set_up_textures();
+    /// Frame::in_source()
+    glm::vec3 in_source(const glm::vec3& barycentrics) const;
     float bulge(const glm::vec3& barycentrics, bool front) const;
-    TextureFootprint footprint(const glm::vec3& barycentrics, int set, const ShadingCell& cell) const;
+    void add_footprints(const glm::vec3& barycentrics, const ShadingCell& cell, TextureFootprint out[2]) const;
 
     const ShadingScene& scene_;
     std::uint32_t triangle_;
     float blur_share_;
     const ShadedPart& part_;
+    const glm::vec2* piece_;                 // Piece::corner, or null
     std::array<std::uint32_t, 3> vertices_;  // Frame::vertices()
     Projection projection_;
     CellTriangle cells_;
+    Attributes corners_;
+    glm::dvec2 uv_edges_[2][2];    // texture coordinates from the triangle's first corner to the others: [set][edge]
     glm::vec3 face_normal_{0.0f};  // unit, towards the front
     float turns_[3];               // of the normals along each edge
     float smoothness_;             // 1: a facet of a smooth surface, 0: its normals merely spread

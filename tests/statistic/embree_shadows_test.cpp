@@ -150,7 +150,7 @@ Counts compare(const Case& c) {
             const std::size_t at = y * c.width + x;
             const std::uint32_t triangle = found.triangles[at];
             if (triangle == kNoTriangle) continue;
-            const ShadedTriangle shaded(shading, triangle, 1);
+            const ShadedTriangle shaded(shading, triangle, 1.0f);
             const glm::vec3 b = shaded.barycentrics_at({x + 0.5 - 0.5 * c.width, 0.5 * c.height - 0.5 - y});
             const ShadedPart& part = shading.part_of(triangle);
             glm::vec3 corner[3], position(0.0f);

@@ -174,7 +174,7 @@ TEST(Shade, OnlyFacetsAlongTheSmoothSurfaceAreLiftedOverTheirShadows) {
         const Frame frame = frame_of(scene, settings_of(1));
         const ShadingScene shading(frame, {});
         LitColor lit;
-        const ShadedTriangle triangle(shading, 0, 1);
+        const ShadedTriangle triangle(shading, 0, 1.0f);
         light_point(shading, triangle.material(), triangle.surface({0.3f, 0.3f, 0.4f}, true, ShadingCell{}), lit);
         return lit.shadowed.empty() ? -1.0f : glm::length(lit.shadowed[0].offset);
     };
