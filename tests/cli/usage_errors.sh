@@ -121,6 +121,7 @@ refuses 2 '--list excludes|excludes --list' scene cubes -o a.glb --list
 refuses 2 '--gain: nan is not a finite number above 0' compare a.exr b.exr -o c.exr --gain nan
 refuses 2 '--gain: -1 is not a finite number above 0' compare a.exr b.exr -o c.exr --gain -1
 refuses 2 '--resolution' verify builtin:cubes --resolution 0x0
+refuses 2 '--target-error: verify looks at --spp' verify builtin:cubes --target-error 0.1
 refuses 2 '--time' verify builtin:cubes --time 0
 
 PENTAPRISM_THREADS=lots refuses 2 "PENTAPRISM_THREADS: 'lots'" render builtin:cubes -o a.exr
