@@ -127,8 +127,11 @@ double sensor_width_of(const CameraSettings& settings, const LensInfo& info) {
 void resolve_size(const CameraSettings& settings, const LensInfo& info, View& view) {
     Lens& lens = view.lens;
     const double sensor_width_mm = sensor_width_of(settings, info);
-    if (settings.focal_length_mm && view.perspective)
-        view.fx = view.fy = *settings.focal_length_mm * view.width / sensor_width_mm;
+    if (!view.perspective && (settings.focal_length_mm || settings.sensor_width_mm))
+        throw Error(ErrorKind::kUsage,
+                    "an orthographic camera has neither focal length nor sensor: leave --focal-length and "
+                    "--sensor-width out");
+    if (settings.focal_length_mm) view.fx = view.fy = *settings.focal_length_mm * view.width / sensor_width_mm;
     view.focal_length_mm = view.perspective ? view.fx * sensor_width_mm / view.width : 0.0;
     if (!settings.defocus) return;
     if (settings.lens_radius) {

@@ -99,7 +99,11 @@ void add_compare(CLI::App& program, Run& run) {
     add_value(*command, "Options", "-o,--output", "FILE", "Write the difference of encoded values, .png or .exr",
               [state](const std::string& text) { state->difference = text; });
     add_value(*command, "Options", "--gain", "G", "Differences in that picture are multiplied by it (default 4)",
-              [state](const std::string& text) { state->gain = parse_number("--gain", text); });
+              [state](const std::string& text) {
+                  state->gain = parse_number("--gain", text);
+                  if (!(state->gain > 0.0 && std::isfinite(state->gain)))
+                      throw Error(ErrorKind::kUsage, fmt::format("--gain: {} is not a finite number above 0", text));
+              });
     command->callback([state, &run] { run = [state] { return compare(*state); }; });
 }
 

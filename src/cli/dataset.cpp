@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <fmt/format.h>
 #include <fstream>
 #include <memory>
@@ -99,7 +100,7 @@ void describe_shutter(const FrameInfo& info, RollingShutter rolling, Json& json)
 
 Json camera_json(const FrameInfo& info, RollingShutter rolling) {
     Json json;
-    json["frame"] = info.frame;
+    json["frame"] = std::llround(info.frame);  // frames of a data set are whole numbers
     json["camera"] = info.camera;
     json["width"] = info.x1 - info.x0;
     json["height"] = info.y1 - info.y0;

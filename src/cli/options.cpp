@@ -264,7 +264,13 @@ void add_method_options(CLI::App& command, MethodSettings& method) {
 
 CLI::Option* add_value(CLI::App& command, const std::string& group, const std::string& names, const std::string& form,
                        const std::string& description, std::function<void(const std::string&)> take) {
-    return command.add_option_function<std::string>(names, std::move(take), description)->type_name(form)->group(group);
+    // A value that is empty is a script's variable that was not set, not the default.
+    const auto take_some = [take = std::move(take),
+                            name = names.substr(names.rfind(',') + 1)](const std::string& text) {
+        if (text.empty()) throw Error(ErrorKind::kUsage, name + ": its value is empty");
+        take(text);
+    };
+    return command.add_option_function<std::string>(names, take_some, description)->type_name(form)->group(group);
 }
 
 std::vector<ShutterPoint> parse_shutter_curve(const std::string& text) {

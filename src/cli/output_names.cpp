@@ -21,6 +21,7 @@ void check_output_name(const fs::path& file, const char* option) {
     if (::access(folder.c_str(), W_OK | X_OK) != 0)
         refuse(fmt::format("the folder {} cannot be written to", folder.string()));
     if (fs::is_directory(file, ignored)) refuse("it is a folder");
+    if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored)) refuse("it is no ordinary file");
 }
 
 void check_picture_name(const fs::path& out, bool has_aovs) {

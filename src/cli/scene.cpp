@@ -57,10 +57,11 @@ int write(const SceneCommand& command) {
 void add_scene(CLI::App& program, Run& run) {
     CLI::App* command = program.add_subcommand("scene", "Write a built-in scene as .glb, or list them");
     const auto state = std::make_shared<SceneCommand>();
-    command->add_option("NAME", state->name, "A name that --list shows")->type_name("");
-    add_value(*command, "Options", "-o,--output", "FILE.glb", "The file to write",
-              [state](const std::string& text) { state->out = text; });
+    CLI::Option* name = command->add_option("NAME", state->name, "A name that --list shows")->type_name("");
+    CLI::Option* out = add_value(*command, "Options", "-o,--output", "FILE.glb", "The file to write",
+                                 [state](const std::string& text) { state->out = text; });
     CLI::Option* list_option = command->add_flag("--list", state->list, "List the built-in scenes");
+    list_option->excludes(name)->excludes(out);
     command->add_flag("--json", state->json, "The list as JSON")->needs(list_option);
     command->callback([state, &run] { run = [state] { return state->list ? list(state->json) : write(*state); }; });
 }

@@ -90,6 +90,8 @@ int judge(const VerifyReport& report) {
 
 int verify(VerifyCommand& command) {
     complete_settings(command.settings);
+    if (command.settings.image.target_error)
+        throw Error(ErrorKind::kUsage, "--target-error: verify looks at --spp samples of each pixel; leave it out");
     const Scene scene = load_scene(command.scene);
     for (const std::string& warning : scene.warnings) print_warning(warning);
     throw_if_interrupted();

@@ -58,12 +58,23 @@ int open_alone(const std::filesystem::path& part) {
     }
 }
 
+// What a symbolic link leads to, so that it stays a link; one that leads nowhere is replaced.
+std::filesystem::path followed(const std::filesystem::path& file) {
+    std::error_code error;
+    if (!std::filesystem::is_symlink(file, error)) return file;
+    const std::filesystem::path target = std::filesystem::canonical(file, error);
+    return error ? file : target;
+}
+
 }  // namespace
 
-PartFile::PartFile(const std::filesystem::path& file) : file_(file), part_(file) {
+PartFile::PartFile(const std::filesystem::path& file) : file_(followed(file)), part_(file_) {
     part_ += ".part";
     std::error_code ignored;
-    if (std::filesystem::is_directory(file_, ignored)) fail(EISDIR);
+    const std::filesystem::file_status there = std::filesystem::status(file_, ignored);
+    if (std::filesystem::is_directory(there)) fail(EISDIR);
+    // The rename would put a file in the place of a device or a pipe.
+    if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there)) fail(ENODEV);
     const int descriptor = open_alone(part_);
     if (descriptor >= 0) stream_.reset(::fdopen(descriptor, "wb"));
     if (!stream_) fail(errno);
@@ -80,8 +91,9 @@ PartFile::~PartFile() {
 
 void PartFile::fail(int system_error) {
     if (failure_.empty()) {
-        const std::string why =
-            system_error == EBUSY ? "another process is writing it" : std::generic_category().message(system_error);
+        const std::string why = system_error == EBUSY    ? "another process is writing it"
+                                : system_error == ENODEV ? "it is no ordinary file"
+                                                         : std::generic_category().message(system_error);
         failure_ = file_.string() + ": cannot write (" + why + ")";
     }
     throw Error(ErrorKind::kOutput, failure_);

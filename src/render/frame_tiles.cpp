@@ -256,9 +256,9 @@ void FrameTiles::render(const Tile& tile, Worker& worker) {
     if (!budget_) return add_samples(tile, *samples_, worker);
     const auto blocks = budget_->share_out(tile);
     for (std::size_t level = 0; level < blocks.size(); ++level) {
-        if (blocks[level] == 0) continue;
         Tile part = tile;
         part.blocks = blocks[level];
+        if (part.wanted_blocks() == 0) continue;  // a crop may leave none of a level's blocks in the tile
         add_samples(part, samples_of_level(level), worker);
     }
 }

@@ -23,9 +23,9 @@ RenderSettings frame_after(RenderSettings settings) {
     return settings;
 }
 
-// In double: pixels come of a quotient.
+// In double: pixels come of a quotient. The sample's triangle has another number here if its frame cut triangles.
 Placed place_of(const Frame& frame, const SurfaceSample& sample) {
-    const Part& part = frame.parts[frame.part_of[sample.triangle]];
+    const Part& part = frame.parts[sample.part_index];
     glm::dvec3 p(0.0);
     double depth = 0.0;
     for (int i = 0; i < 3; ++i) {

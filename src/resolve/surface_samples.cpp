@@ -36,13 +36,14 @@ const SurfaceSamples::Entry& SurfaceSamples::entry(std::uint32_t triangle, int s
 
 SurfaceSample SurfaceSamples::at(std::uint32_t triangle, float depth, const LocalSample& sample) {
     const Frame& frame = scene_->frame();
-    const Part& part = frame.parts[frame.part_of[triangle]];
+    const std::uint32_t part_index = frame.part_of[triangle];
+    const Part& part = frame.parts[part_index];
     const int segment = std::min(static_cast<int>(sample.t * static_cast<float>(part.segments)), part.segments - 1);
     const Entry& e = entry(triangle, part.moves ? segment : 0);
     const Seen seen = project(e.lanes, sample);
 
     SurfaceSample s;
-    s.triangle = triangle;
+    s.part_index = part_index;
     s.part = &part;
     s.shaded = &scene_->part_of(triangle);
     s.vertices = frame.vertices(triangle);

@@ -14,7 +14,7 @@
 namespace pentaprism {
 
 struct SurfaceSample {
-    std::uint32_t triangle = 0;
+    std::uint32_t part_index = 0;  ///< into Frame::parts, of every frame of the scene
     const Part* part = nullptr;
     const ShadedPart* shaded = nullptr;
     std::array<std::uint32_t, 3> vertices{};  ///< of the Primitive: Frame::vertices()

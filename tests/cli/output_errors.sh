@@ -7,6 +7,17 @@ refuses 4 'no/such/a.exr: cannot write .*no/such does not exist' render builtin:
 refuses 4 'stats no/s.json.*does not exist' render builtin:cubes -o a.exr --stats no/s.json
 mkdir folder.exr
 refuses 4 'folder.exr: cannot write' render builtin:cubes -o folder.exr "${small[@]}"
+mkfifo pipe.exr pipe.json
+refuses 4 'output pipe.exr: cannot write \(it is no ordinary file\)' render builtin:cubes -o pipe.exr -r 16384x16384 -s 4096
+refuses 4 'stats pipe.json: cannot write \(it is no ordinary file\)' render builtin:cubes -o a.exr --stats pipe.json "${small[@]}"
+run render builtin:cubes -o picture.exr "${small[@]}"
+refuses 4 'pipe.exr: cannot write \(it is no ordinary file\)' compare picture.exr picture.exr -o pipe.exr
+check "a pipe stays a pipe" test -p pipe.exr -a -p pipe.json
+mkdir elsewhere
+echo text >elsewhere/real.exr
+ln -s elsewhere/real.exr link.exr
+succeeds render builtin:cubes -o link.exr "${small[@]}"
+check "a link stays a link, and its file is the picture" test -L link.exr -a "$(cmp elsewhere/real.exr picture.exr && echo same)" = same
 echo text >file
 refuses 4 'file is not a folder' render builtin:cubes -o file/a.exr "${small[@]}"
 refuses 4 'no/a.glb: cannot write|no/a.glb' scene cubes -o no/a.glb

@@ -20,6 +20,9 @@ check "shards are the picture" cmp one.exr merged.exr
 succeeds render builtin:cubes -r 100x58 -s 4 --fstop 0.5 --frame 5 -q -o uniform.exr --stats stats.json
 check "without it" json stats.json 'd["mean_spp"] == 4 and "pilot_samples" not in d'
 
+# A crop that has no block of some of its tile's numbers of samples.
+succeeds render builtin:hand -r 70x66 --frame 5 --crop 33,36,1,2 --transparency a-buffer -s 2 --max-spp 512 --target-error 0.01 -q -o crop.exr
+
 plain=(builtin:cubes -r 32x32 -o a.exr)
 refuses 2 "--target-error: 0 " render "${plain[@]}" --target-error 0
 refuses 2 "--target-error: 2 " render "${plain[@]}" --target-error 2

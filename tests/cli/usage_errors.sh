@@ -112,8 +112,16 @@ refuses 2 '--overwrite excludes --skip-existing|--skip-existing excludes --overw
     render builtin:cubes -o a.exr --overwrite --skip-existing
 refuses 2 'must end in .exr or .png' render builtin:cubes -o a.jpg
 refuses 2 'must end in .exr or .png' render builtin:cubes -o picture
-refuses 2 'must end in .exr or .png' render builtin:cubes -o ''
+for option in --output --stats --dataset --samples --aperture-image --camera --focus-object --animation; do
+    refuses 2 "$option: its value is empty" render builtin:cubes "$option" ''
+done
+refuses 2 '--output: its value is empty' render builtin:cubes -o ''
+refuses 2 '--report: its value is empty' bench --quick --report ''
+refuses 2 '--list excludes|excludes --list' scene cubes -o a.glb --list
+refuses 2 '--gain: nan is not a finite number above 0' compare a.exr b.exr -o c.exr --gain nan
+refuses 2 '--gain: -1 is not a finite number above 0' compare a.exr b.exr -o c.exr --gain -1
 refuses 2 '--resolution' verify builtin:cubes --resolution 0x0
+refuses 2 '--target-error: verify looks at --spp' verify builtin:cubes --target-error 0.1
 refuses 2 '--time' verify builtin:cubes --time 0
 
 PENTAPRISM_THREADS=lots refuses 2 "PENTAPRISM_THREADS: 'lots'" render builtin:cubes -o a.exr

@@ -106,6 +106,34 @@ TEST(Flow, IsTheFiniteDifferenceOfProjectedVertices) {
     }
 }
 
+TEST(Flow, IsThatOfAPinholeWhereTrianglesWereCutForTheBlur) {
+    const Scene scene = load_scene("builtin:cubes");
+    RenderSettings settings = sharp_picture(4, {Aov::kMotion, Aov::kCoc, Aov::kCoverage});
+    RenderStats whole, cut;
+    const Picture expected = render_picture(scene, settings, 7.0, whole);
+    settings.camera.defocus = true;
+    settings.camera.lens_radius = 0.02;
+    settings.camera.focus_range = {0.9, 4.0};
+    const Picture picture = render_picture(scene, settings, 7.0, cut);
+    ASSERT_GT(cut.triangles, whole.triangles);
+    int compared = 0;
+    float longest = 0.0f;
+    for (std::size_t i = 0; i < std::size_t{kWidth} * kHeight; ++i) {
+        const auto value = [&](const Picture& of, int channel) {
+            return of.aovs[std::size_t{kWidth} * kHeight * static_cast<std::size_t>(channel) + i];
+        };
+        if (value(picture, 4) != 0.0f || value(picture, 5) != 1.0f || value(expected, 5) != 1.0f) continue;
+        ++compared;
+        for (int channel = 0; channel < 4; ++channel) {
+            EXPECT_NEAR(value(picture, channel), value(expected, channel), 1e-3f) << "pixel " << i;
+            longest = std::max(longest, std::abs(value(picture, channel)));
+        }
+        if (testing::Test::HasFailure()) return;
+    }
+    EXPECT_GT(compared, 5000);
+    EXPECT_GT(longest, 1.0f);
+}
+
 TEST(Flow, LeadsToTheMomentThatIsAskedFor) {
     const Scene scene = load_scene("builtin:cubes");
     RenderStats stats;

@@ -215,6 +215,13 @@ TEST(View, OfAnOrthographicCameraKeepsPlacesAndShearsByTheSameSlope) {
     settings.camera.lens_radius.reset();
     settings.camera.fstop = 2;
     EXPECT_THROW(make_view(scene, settings, 0), Error) << "no focal length, so no f-stop";
+    settings.camera.fstop.reset();
+    EXPECT_NO_THROW(make_view(scene, settings, 0));
+    settings.camera.focal_length_mm = 50;
+    EXPECT_THROW(make_view(scene, settings, 0), Error) << "it would change nothing";
+    settings.camera.focal_length_mm.reset();
+    settings.camera.sensor_width_mm = 24;
+    EXPECT_THROW(make_view(scene, settings, 0), Error);
 }
 
 TEST(View, FindsACameraByNameOrIndexAndFramesASceneWithoutOne) {
