@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <pentaprism/error.h>
+#include <sstream>
 #include <string>
 #include <string_view>
 
@@ -57,9 +58,16 @@ std::vector<ShutterPoint> trapezoid_shutter(double open, double close) {
 std::vector<ShutterPoint> read_shutter_curve(const std::string& file) {
     std::ifstream in(file);
     if (!in) throw Error(ErrorKind::kUsage, fmt::format("--shutter-curve: {} cannot be read", file));
+    // A device may have no end.
+    constexpr std::size_t kMost = 1 << 20;
+    std::string all(kMost + 1, '\0');
+    in.read(all.data(), static_cast<std::streamsize>(all.size()));
+    all.resize(static_cast<std::size_t>(in.gcount()));
+    if (all.size() > kMost) throw Error(ErrorKind::kUsage, fmt::format("--shutter-curve: {}: over 1 MB", file));
     std::vector<ShutterPoint> points;
+    std::istringstream lines(all);
     std::string text;
-    for (int number = 1; std::getline(in, text); ++number) {
+    for (int number = 1; std::getline(lines, text); ++number) {
         std::string_view line(text);
         line = line.substr(0, line.find('#'));
         if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;

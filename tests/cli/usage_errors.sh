@@ -70,6 +70,7 @@ done <<'END'
 --shutter 1e999 --shutter
 --shutter-position middle --shutter-position
 --shutter-curve sine --shutter-curve: sine cannot be read
+--shutter-curve /dev/zero --shutter-curve: /dev/zero: over 1 MB
 --shutter-curve trapezoid:0.1 --shutter-curve.*trapezoid:OPEN,CLOSE
 --shutter-curve trapezoid:0.8,0.2 --shutter-curve: times rise
 --shutter-curve trapezoid:-1,0.2 --shutter-curve: times rise
