@@ -26,7 +26,7 @@ struct FrameInfo {
     double lens_radius = 0.0;     ///< metres, 0: pinhole
     double focus_distance = 0.0;  ///< metres; 0 for a pinhole
     double fstop = 0.0;           ///< 0 for a pinhole
-    double focal_length_mm = 0.0;
+    double focal_length_mm = 0.0;  ///< 0 of an orthographic camera
     std::array<double, 16> world_to_camera{};  ///< column-major, at mid-shutter; camera looks along -z
     std::array<double, 16> world_to_ndc{};     ///< column-major, at mid-shutter; NDC in [-1,1], y up
     double fx = 0.0, fy = 0.0;                 ///< pixels: focal length (perspective) or pixels a metre (orthographic)

@@ -104,6 +104,7 @@ Json camera_json(const FrameInfo& info, RollingShutter rolling) {
     json["camera"] = info.camera;
     json["width"] = info.x1 - info.x0;
     json["height"] = info.y1 - info.y0;
+    json["projection"] = info.focal_length_mm > 0.0 ? "perspective" : "orthographic";
     // Pixels from the upper left corner of the delivered part, y down.
     json["intrinsics"] = {
         {"fx", info.fx}, {"fy", info.fy}, {"cx", 0.5 * info.width - info.x0}, {"cy", 0.5 * info.height - info.y0}};

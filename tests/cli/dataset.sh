@@ -48,6 +48,7 @@ manifest, camera = json.load(open("set/manifest.json")), json.load(open("set/cam
 assert manifest["frames"] == 2 == len(camera["frames"])
 frame = camera["frames"][0]
 assert frame["frame"] == 3 and isinstance(frame["frame"], int) and frame["intrinsics"]["cx"] == 32
+assert frame["projection"] == "perspective"
 assert abs(frame["exposure_s"] - 0.5 / 24) < 1e-12 or frame["exposure_s"] > 0
 assert frame["knots"][0]["time_s"] == frame["shutter_open_s"] and frame["knots"][-1]["time_s"] == frame["shutter_close_s"]
 assert all(knot["fx"] == frame["intrinsics"]["fx"] for knot in frame["knots"]), "nothing zooms"
@@ -130,4 +131,22 @@ refuses 2 '--output' render builtin:cubes "${small[@]}"
 refuses 2 '--aov' render builtin:cubes --dataset set --aov coc "${small[@]}"
 touch file
 refuses 4 '--dataset file' render builtin:cubes --dataset file "${small[@]}"
+# An orthographic camera says so.
+python3 - <<'PY'
+import base64, json, struct
+data = struct.pack("<9f", -1, -1, -3, 1, -1, -3, 0, 1, -3)
+json.dump({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}], "nodes": [{"mesh": 0}, {"camera": 0}],
+    "cameras": [{"type": "orthographic", "orthographic": {"xmag": 2, "ymag": 2, "znear": 0.1, "zfar": 10}}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [-1, -1, -3], "max": [1, 1, -3]}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}]},
+    open("flat.gltf", "w"))
+PY
+succeeds render flat.gltf --dataset flat -r 32x32 -s 4
+check "an orthographic camera: pixels a metre" python3 -c '
+import json
+frame = json.load(open("flat/camera.json"))["frames"][0]
+assert frame["projection"] == "orthographic" and frame["intrinsics"]["fx"] == 8 and frame["focal_length_mm"] == 0, frame'
+
 finish
