@@ -77,7 +77,10 @@ BenchPlan plan_of(const BenchCommand& command) {
     if (command.runs) plan.runs = static_cast<int>(*command.runs);
     if (command.tests) plan.most_tests = *command.tests;
     if (command.seconds) plan.seconds = *command.seconds;
-    if (command.embree) plan.peer_threads = {1, settings.method.threads};
+    if (command.embree) {
+        plan.peer_threads = {1};
+        if (settings.method.threads != 1) plan.peer_threads.push_back(settings.method.threads);
+    }
     plan.images = !command.folder.empty();
     check_methods(plan.methods);
     complete_settings(settings);
