@@ -46,13 +46,16 @@ inline constexpr float kDepthRounding = 32.0f / 16777216.0f;
 /// what is beyond 2^(i + kLeastLimit) metres, the last one nothing.
 inline constexpr int kLimits = 24, kLeastLimit = -8;
 
+/// Of a positive number, as std::ilogb(), which is a call; of subnormal ones one that is small enough.
+inline int binary_exponent(float x) {
+    return static_cast<int>(std::bit_cast<std::uint32_t>(x) >> 23) - 127;
+}
+
 /// The least limit that holds what is at that depth. An orthographic view, which sees both ways, has the last one
 /// alone.
 inline int limit_of(float depth, bool perspective) {
     if (!perspective || !std::isfinite(depth)) return kLimits - 1;
-    // As std::ilogb(), which is a call.
-    const int exponent = static_cast<int>(std::bit_cast<std::uint32_t>(depth) >> 23) - 127;
-    return depth > 0.0f ? std::clamp(exponent + 1 - kLeastLimit, 0, kLimits - 1) : 0;
+    return depth > 0.0f ? std::clamp(binary_exponent(depth) + 1 - kLeastLimit, 0, kLimits - 1) : 0;
 }
 
 struct Casters {

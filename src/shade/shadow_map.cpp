@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 
 #include "base/aligned.h"
@@ -16,11 +15,6 @@ constexpr int kLevels = (ShadowMap::kCoarsest - kFinest + 1) * kLimits;
 
 // What all cells share in which nothing is.
 const std::vector<float> kEmptyCell(ShadowSamples::kPerCell, INFINITY);
-
-// Of a positive number, as std::ilogb(), which is a call; of subnormal ones one that is small enough.
-int exponent(float x) {
-    return static_cast<int>(std::bit_cast<std::uint32_t>(x) >> 23) - 127;
-}
 
 // Keeps what is there already: several threads may make the same thing, and all makes are equal.
 template <class T>
@@ -77,7 +71,8 @@ void ShadowMap::make(bool parallel) const {
 }
 
 int ShadowMap::exponent_of(float texel) const {
-    return texel > 0.0f && std::isfinite(texel) ? std::clamp(exponent(texel), least_exponent_, kCoarsest) : kCoarsest;
+    return texel > 0.0f && std::isfinite(texel) ? std::clamp(binary_exponent(texel), least_exponent_, kCoarsest)
+                                                : kCoarsest;
 }
 
 ShadowMap::Level& ShadowMap::level(int exponent, int limit) const {
