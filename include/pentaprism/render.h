@@ -22,10 +22,10 @@ struct FrameInfo {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;  ///< the part that is rendered, half open
     double frame = 0.0, fps = 24.0;
     double shutter_open = 0.0, shutter_close = 0.0;  ///< seconds; of a rolling shutter: of the first row, of the last
-    double readout = 0.0;         ///< seconds between the first row's opening and the last's; 0: no rolling shutter
-    double lens_radius = 0.0;     ///< metres, 0: pinhole
-    double focus_distance = 0.0;  ///< metres; 0 for a pinhole
-    double fstop = 0.0;           ///< 0 for a pinhole
+    double readout = 0.0;          ///< seconds between the first row's opening and the last's; 0: no rolling shutter
+    double lens_radius = 0.0;      ///< metres, 0: pinhole
+    double focus_distance = 0.0;   ///< metres; 0 for a pinhole
+    double fstop = 0.0;            ///< 0 for a pinhole
     double focal_length_mm = 0.0;  ///< 0 of an orthographic camera
     std::array<double, 16> world_to_camera{};  ///< column-major, at mid-shutter; camera looks along -z
     std::array<double, 16> world_to_ndc{};     ///< column-major, at mid-shutter; NDC in [-1,1], y up
