@@ -23,8 +23,8 @@ namespace pentaprism {
 namespace HWY_NAMESPACE {
 namespace {
 
-using AskEdges = std::size_t (*)(TileState&, const HalfPlanes&, int, std::size_t);
-using TestExactly = void (*)(TileState&, const LocalTriangle&, std::size_t);
+using AskEdges = std::size_t (*)(TileState&, const Tested&, std::size_t);
+using TestExactly = void (*)(TileState&, const Tested&, std::size_t);
 
 // One triangle in one tile.
 struct Pair {
@@ -38,7 +38,7 @@ struct Pair {
 
 template <Moves kMoves, bool kDefocus>
 void choose(Pair& pair) {
-    pair.ask_edges = keep_within_edges<kMoves != Moves::kNot, kDefocus, false>;
+    pair.ask_edges = keep_within_edges<kMoves, kDefocus, false>;
     pair.test_exactly = pair.triangle.two_sided ? write_hits<Kind<kMoves, kDefocus, Seen::kBoth, false>>
                                                 : write_hits<Kind<kMoves, kDefocus, Seen::kFront, false>>;
 }
@@ -77,14 +77,14 @@ class RecordedTile {
     void ask_half_planes() {
         for (const Pair& pair : pairs_) {
             std::copy(pair.listed.begin(), pair.listed.end(), state_.jobs.begin());
-            pair.ask_edges(state_, batches_[pair.batch].planes, pair.k, pair.listed.size());
+            pair.ask_edges(state_, tested(pair), pair.listed.size());
         }
     }
     void start_depths() { hits_.reset(state_.slots(), work_.tile); }
     void test_exactly() {
         for (const Pair& pair : pairs_) {
             std::copy(pair.kept.begin(), pair.kept.end(), state_.jobs.begin());
-            pair.test_exactly(state_, pair.triangle, pair.kept.size());
+            pair.test_exactly(state_, tested(pair), pair.kept.size());
         }
     }
 
@@ -110,6 +110,8 @@ class RecordedTile {
         state_.jobs.resize(vectors + kLanes);
     }
 
+    Tested tested(const Pair& pair) const { return {batches_[pair.batch], pair.k, 1, pair.triangle}; }
+
     std::size_t list(const Pair& pair) {
         const BlurBatch& batch = batches_[pair.batch];
         const StratumLimits limits(state_, batch.segment[pair.k], batch.segments[pair.k]);
@@ -127,7 +129,7 @@ class RecordedTile {
         const std::size_t listed = list(pair);
         if (listed == 0) return;
         pair.listed.assign(state_.jobs.begin(), state_.jobs.begin() + static_cast<std::ptrdiff_t>(listed));
-        const std::size_t kept = pair.ask_edges(state_, batch.planes, k, listed);
+        const std::size_t kept = pair.ask_edges(state_, tested(pair), listed);
         pair.kept.assign(state_.jobs.begin(), state_.jobs.begin() + static_cast<std::ptrdiff_t>(kept));
         pairs_.push_back(std::move(pair));
     }

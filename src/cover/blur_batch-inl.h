@@ -32,6 +32,7 @@ struct BlurBatch {
     // As LocalTriangle has them.
     HWY_ALIGN float qx[3][kSize], qy[3][kSize], qw[3][kSize], qc[3][kSize], qz[3][kSize];
     HWY_ALIGN float dx[3][kSize], dy[3][kSize], dw[3][kSize], dc[3][kSize], dz[3][kSize];
+    HWY_ALIGN float box[4][kSize];  // asked, and filled in, only where `behind`
     // Not 0: reaches the camera plane, where half-planes mean nothing; moves; is out of focus somewhere.
     HWY_ALIGN std::int32_t behind[kSize], moves[kSize], defocus[kSize];
     HalfPlanes planes;

@@ -8,8 +8,9 @@
 //      slot) of these whose farthest depth so far is beyond the triangle form a work list (work_list-inl.h);
 //   3. a pass over the list keeps vectors with samples inside the edges' half-planes, without branching on it;
 //   4. a pass over those does the exact test, depth, opacity and writes (vector_test-inl.h).
-// Where a tile holds more triangles than pixels, sixteen that blur alike take step 2 together (cluster-inl.h).
-// This file is compiled once for each CPU target.
+// Where a tile holds more triangles than pixels, sixteen that blur alike take step 2 together (cluster-inl.h). Segments
+// of a path that vectors cross are listed and tested together (path_time-inl.h). This file is compiled once for each
+// CPU target.
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "cover/cover_vectors.cpp"
@@ -30,6 +31,7 @@
 #include "cover/cluster-inl.h"
 #include "cover/half_planes-inl.h"
 #include "cover/lanes-inl.h"
+#include "cover/path_time-inl.h"
 #include "cover/vector_test-inl.h"
 #include "cover/work_list-inl.h"
 
@@ -43,7 +45,7 @@ namespace {
 constexpr float kLargeTriangle = 6.0f;
 constexpr int kWorthRefining = 6;
 
-using CoverJobs = void (*)(TileState&, const LocalTriangle&, const HalfPlanes*, int, std::size_t);
+using CoverJobs = void (*)(TileState&, const Tested&, bool, std::size_t);
 
 template <Moves kMoves, bool kDefocus, bool kFine>
 CoverJobs choose(Seen seen) {
@@ -65,53 +67,109 @@ CoverJobs choose(Seen seen, bool motion, bool in_pieces) {
                      : choose<Moves::kStraight, kDefocus, kFine>(seen);
 }
 
-CoverJobs choose_kind(const TileState& state, const BlurBatch& batch, int k) {
-    const bool motion = batch.moves[k] != 0, in_pieces = batch.segments[k] > 1.0f;
+Seen sides_seen(const BlurBatch& batch, int k) {
     const Facing facing = batch.binned[k]->facing;
-    const Seen seen = !batch.part[k]->two_sided || facing == Facing::kFront ? Seen::kFront
-                      : facing == Facing::kBack                             ? Seen::kBack
-                                                                            : Seen::kBoth;
+    return !batch.part[k]->two_sided || facing == Facing::kFront ? Seen::kFront
+           : facing == Facing::kBack                             ? Seen::kBack
+                                                                 : Seen::kBoth;
+}
+
+CoverJobs choose_kind(const TileState& state, const Tested& tested) {
+    const BlurBatch& batch = tested.batch;
+    const int k = tested.k;
     const bool fine = !state.arrangement.places.empty();
+    Seen seen = sides_seen(batch, k);
+    if (tested.count > 1) {  // rare without defocus: not a kernel of its own
+        for (int next = k + 1; next < k + tested.count; ++next)
+            if (sides_seen(batch, next) != seen) seen = Seen::kBoth;
+        return fine ? choose<Moves::kAlongPieces, true, true>(seen) : choose<Moves::kAlongPieces, true, false>(seen);
+    }
+    const bool motion = batch.moves[k] != 0, in_pieces = batch.segments[k] > 1.0f;
     if (batch.defocus[k] == 0)
         return fine ? choose<false, true>(seen, motion, in_pieces) : choose<false, false>(seen, motion, in_pieces);
     return fine ? choose<true, true>(seen, motion, in_pieces) : choose<true, false>(seen, motion, in_pieces);
+}
+
+// The triangle in `count` segments from the batch's k on, against the vectors of the work list.
+void cover_listed(TileState& state, const BlurBatch& batch, int k, int count, std::size_t jobs) {
+    if (jobs == 0) return;
+    const LocalTriangle T = local_triangle(batch, k, state.work.frame);
+    const Tested tested{batch, k, count, T};
+    choose_kind(state, tested)(state, tested, true, jobs);
 }
 
 std::uint64_t blocks_in_tile(const TileState& state, const BinnedTriangle& binned) {
     return blocks_of(binned, state.work.tile, state.arrangement.block_size) & state.tile_blocks;
 }
 
-void cover_at_camera_plane(TileState& state, const BlurBatch& batch, int k, const CullTest& camera_plane_test) {
-    const BinnedTriangle& binned = *batch.binned[k];
-    const LocalTriangle T = localize(state.work.frame, binned.triangle, binned.segment, state.centre, state.work.scale);
-    const std::uint64_t blocks =
-        blocks_at_camera_plane(T, camera_plane_test, static_cast<float>(state.work.frame.view.lens.ratio),
-                               state.block_size, blocks_in_tile(state, binned));
-    std::fill(state.masks, state.masks + state.stratum_count, ~0ull);
-    const std::size_t jobs = list_jobs(state, state.masks, blocks, batch.nearest[k]);
-    choose_kind(state, batch, k)(state, T, nullptr, k, jobs);
+// The triangle in `count` segments from the batch's k on, all of which reach the camera plane.
+void cover_at_camera_plane(TileState& state, BlurBatch& batch, int k, int count, const CullTest& camera_plane_test) {
+    HWY_ALIGN std::uint64_t masks[kMaxStrata];
+    LocalTriangle first;
+    std::uint64_t blocks_of_all = 0;
+    float nearest = batch.nearest[k];
+    std::fill(state.masks, state.masks + state.stratum_count, 0);
+    for (int segment = k; segment < k + count; ++segment) {
+        const LocalTriangle T = at_camera_plane(state, batch, segment);
+        if (segment == k) first = T;
+        for (int side = 0; side < 4; ++side) batch.box[side][segment] = T.box[side];
+        const std::uint64_t blocks =
+            blocks_at_camera_plane(T, camera_plane_test, static_cast<float>(state.work.frame.view.lens.ratio),
+                                   state.block_size, blocks_in_tile(state, *batch.binned[segment]));
+        StratumLimits(state, batch.segment[segment], batch.segments[segment]).all_blocks_in_time(masks);
+        for (int s = 0; s < state.stratum_count; ++s) state.masks[s] |= masks[s] & blocks;
+        blocks_of_all |= blocks;
+        nearest = std::min(nearest, batch.nearest[segment]);
+    }
+    const std::size_t jobs = list_jobs(state, state.masks, blocks_of_all, nearest);
+    const Tested tested{batch, k, count, first};
+    choose_kind(state, tested)(state, tested, false, jobs);
 }
 
-void cover_triangle(TileState& state, const BlurBatch& batch, int k) {
-    const std::uint64_t blocks = blocks_in_tile(state, *batch.binned[k]);
+// Blocks of each stratum in which the triangle may be hit.
+void blocks_of_strata(TileState& state, const BlurBatch& batch, int k, std::uint64_t blocks, std::uint64_t* masks) {
     const HalfPlanes& H = batch.planes;
     const StratumLimits limits(state, batch.segment[k], batch.segments[k]);
-    boxes_of_strata(state, H, k, limits, state.masks);
+    boxes_of_strata(state, H, k, limits, masks);
     // Many blocks in many strata: worth a closer look.
     const int block_count = std::popcount(blocks);
     if ((block_count >= kWorthRefining && H.smaller_side[k] > kLargeTriangle) ||
         (block_count > 1 && state.stratum_count == 1))
-        refuse_blocks_by_edges(state, H, k, limits, BlockGroups(blocks), state.masks);
-    const std::size_t jobs = list_jobs(state, state.masks, blocks, batch.nearest[k]);
-    if (jobs != 0) choose_kind(state, batch, k)(state, local_triangle(batch, k, state.work.frame), &H, k, jobs);
+        refuse_blocks_by_edges(state, H, k, limits, BlockGroups(blocks), masks);
+}
+
+void cover_triangle(TileState& state, const BlurBatch& batch, int k) {
+    const std::uint64_t blocks = blocks_in_tile(state, *batch.binned[k]);
+    blocks_of_strata(state, batch, k, blocks, state.masks);
+    cover_listed(state, batch, k, 1, list_jobs(state, state.masks, blocks, batch.nearest[k]));
+}
+
+// The same in `count` segments at once.
+void cover_segments(TileState& state, const BlurBatch& batch, int k, int count) {
+    HWY_ALIGN std::uint64_t masks[kMaxStrata];
+    std::uint64_t blocks_of_all = 0;
+    float nearest = batch.nearest[k];
+    std::fill(state.masks, state.masks + state.stratum_count, 0);
+    for (int segment = k; segment < k + count; ++segment) {
+        const std::uint64_t blocks = blocks_in_tile(state, *batch.binned[segment]);
+        blocks_of_strata(state, batch, segment, blocks, masks);
+        for (int s = 0; s < state.stratum_count; ++s) state.masks[s] |= masks[s] & blocks;
+        blocks_of_all |= blocks;
+        nearest = std::min(nearest, batch.nearest[segment]);
+    }
+    cover_listed(state, batch, k, count, list_jobs(state, state.masks, blocks_of_all, nearest));
 }
 
 void cover_one_by_one(TileState& state, BlurBatch& batch, const CullTest& camera_plane_test) {
-    for (int k = 0; k < batch.count; ++k) {
+    for (int k = 0; k < batch.count;) {
+        const int count = count_segments(state, batch, k);
         if (batch.behind[k] != 0)
-            cover_at_camera_plane(state, batch, k, camera_plane_test);
-        else
+            cover_at_camera_plane(state, batch, k, count, camera_plane_test);
+        else if (count == 1)
             cover_triangle(state, batch, k);
+        else
+            cover_segments(state, batch, k, count);
+        k += count;
     }
 }
 
@@ -134,9 +192,7 @@ void cover_cluster(TileState& state, ClusterList& list, BlurBatch& batch, const 
         list_cluster(state, batch, blocks, list);
         for (int k = 0; k < batch.count; ++k) {
             if (batch.nearest[k] > state.tile_farthest) continue;
-            const std::size_t jobs = jobs_of_triangle(state, list, k, batch.nearest[k]);
-            if (jobs != 0)
-                choose_kind(state, batch, k)(state, local_triangle(batch, k, state.work.frame), &batch.planes, k, jobs);
+            cover_listed(state, batch, k, 1, jobs_of_triangle(state, list, k, batch.nearest[k]));
         }
     } else {
         cover_one_by_one(state, batch, camera_plane_test);
@@ -157,7 +213,7 @@ void cover_front_to_back(TileState& state) {
     const CullTest& camera_plane_test = *find_cull_test("improved-dual-space");
     BlurBatch batch{}, cluster{};
     ClusterList list;
-    const ClusteredOrder order = clustered_front_to_back(state.work);
+    const ClusteredOrder order = clustered_front_to_back(state.work, state.vector_span);
     const std::vector<std::uint32_t>& entries = order.entries;
     if (!order.clusters.empty()) {
         list.jobs.resize(state.jobs.size());
@@ -169,18 +225,16 @@ void cover_front_to_back(TileState& state) {
     for (std::size_t i = 0; i < entries.size(); ++i) {
         fetch_ahead(state.work, entries, i);
         const BinnedTriangle& binned = state.work.triangles[entries[i]];
-        const float nearest = nearest_depth(state.work, binned);
         const bool in_cluster = next_cluster != order.clusters.end() && i >= *next_cluster;
+        if (order.nearest[i] > state.tile_farthest) break;  // so are all that follow
         if (in_cluster) {
-            append(cluster, state.work.frame, binned, nearest);
+            append(cluster, state.work.frame, binned, nearest_depth(state.work, binned));
             if (cluster.count < BlurBatch::kSize) continue;
             ++next_cluster;
-            if (*std::min_element(cluster.nearest, cluster.nearest + cluster.count) > state.tile_farthest) break;
             cover_cluster(state, list, cluster, camera_plane_test);
         } else {
-            if (nearest > state.tile_farthest) break;  // so are all that follow
             if (some_blocks && blocks_in_tile(state, binned) == 0) continue;
-            append(batch, state.work.frame, binned, nearest);
+            append(batch, state.work.frame, binned, nearest_depth(state.work, binned));
             if (batch.count < BlurBatch::kSize) continue;
             cover_batch(state, batch, camera_plane_test);
         }

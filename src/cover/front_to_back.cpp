@@ -8,13 +8,13 @@
 
 namespace pentaprism {
 
-// Rounding may put a hit a few ulps in front of the nearest vertex.
-float nearest_depth(const TileWork& work, const BinnedTriangle& triangle) {
-    constexpr float kMargin = 1.0f - 16.0f * 0x1p-24f;
-    return work.frame.view.perspective ? triangle.nearest_w * kMargin : -INFINITY;
-}
-
 namespace {
+
+// Rounding may put a hit a few ulps in front of the nearest vertex.
+float depth_of(const TileWork& work, float nearest_w) {
+    constexpr float kMargin = 1.0f - 16.0f * 0x1p-24f;
+    return work.frame.view.perspective ? nearest_w * kMargin : -INFINITY;
+}
 
 // As one number: the bits of the (positive) float above those of the place in the list. All differ, so the order is the
 // same on every processor.
@@ -70,7 +70,39 @@ bool is_cluster(const TileWork& work, const std::vector<std::uint32_t>& list, st
     return all.blocks() * static_cast<int>(kClusterSize) <= kMostSpread * sum && most <= kDeepest * least;
 }
 
+// Of the list: where the segments of one triangle end that follow each other from `first` on, if vectors cross them.
+std::size_t end_of_run(const TileWork& work, const std::vector<std::uint32_t>& list, std::size_t first,
+                       float vector_span) {
+    const auto follows = [&](std::size_t i) {
+        const BinnedTriangle &one = work.triangles[list[i - 1]], &next = work.triangles[list[i]];
+        return next.triangle == one.triangle && next.segment == one.segment + 1;
+    };
+    std::size_t end = first + 1;
+    if (end == list.size() || !follows(end)) return end;
+    const Frame& frame = work.frame;
+    if (!crosses_segments(frame.parts[frame.part_of[work.triangles[list[first]].triangle]], vector_span)) return end;
+    while (end < list.size() && follows(end)) ++end;
+    return end;
+}
+
+// Those that may be in clusters come last, by segment; returns the first of them.
+std::size_t sort_for_clusters(const TileWork& work, std::vector<std::uint32_t>& list, float vector_span) {
+    const Frame& frame = work.frame;
+    const auto crosses = [&](std::uint32_t i) {
+        return crosses_segments(frame.parts[frame.part_of[work.triangles[i].triangle]], vector_span);
+    };
+    const auto segment = [&](std::uint32_t i) { return work.triangles[i].segment; };
+    if (std::none_of(list.begin(), list.end(), [&](std::uint32_t i) { return segment(i) != 0; })) return 0;
+    const auto others = std::stable_partition(list.begin(), list.end(), crosses);
+    std::stable_sort(others, list.end(), [&](std::uint32_t a, std::uint32_t b) { return segment(a) < segment(b); });
+    return static_cast<std::size_t>(others - list.begin());
+}
+
 }  // namespace
+
+float nearest_depth(const TileWork& work, const BinnedTriangle& triangle) {
+    return depth_of(work, triangle.nearest_w);
+}
 
 std::vector<std::uint32_t> front_to_back(const TileWork& work) {
     std::vector<std::uint64_t> keys;
@@ -83,42 +115,43 @@ std::vector<std::uint32_t> front_to_back(const TileWork& work) {
     return order;
 }
 
-ClusteredOrder clustered_front_to_back(const TileWork& work) {
-    if (work.list.size() < kCrowded) return {front_to_back(work), {}};
+ClusteredOrder clustered_front_to_back(const TileWork& work, float vector_span) {
     std::vector<std::uint32_t> list(work.list.begin(), work.list.end());
-    const auto segment = [&](std::uint32_t i) { return work.triangles[i].segment; };
-    if (std::any_of(list.begin(), list.end(), [&](std::uint32_t i) { return segment(i) != 0; }))
-        std::stable_sort(list.begin(), list.end(),
-                         [&](std::uint32_t a, std::uint32_t b) { return segment(a) < segment(b); });
+    const std::size_t others = list.size() < kCrowded ? list.size() : sort_for_clusters(work, list, vector_span);
     constexpr std::uint32_t kWhole = 0x80000000u;  // place in the list of the first of a cluster
     std::vector<std::uint64_t> keys;
     keys.reserve(list.size());
     const auto nearest = [&](std::size_t place) { return work.triangles[list[place]].nearest_w; };
-    for (std::size_t i = 0; i < list.size();) {
-        const bool whole = is_cluster(work, list, i);
+    const auto nearest_of = [&](std::size_t begin, std::size_t end) {
+        float least = nearest(begin);
+        for (std::size_t k = begin + 1; k < end; ++k) least = std::min(least, nearest(k));
+        return least;
+    };
+    for (std::size_t i = 0; i < others;) {
+        const std::size_t end = std::min(others, end_of_run(work, list, i, vector_span));
+        const float least = nearest_of(i, end);
+        for (; i < end; ++i) keys.push_back(depth_key(work, least, static_cast<std::uint32_t>(i)));
+    }
+    for (std::size_t i = others; i < list.size();) {
         const std::size_t end = std::min(i + kClusterSize, list.size());
-        if (whole) {
-            float least = nearest(i);
-            for (std::size_t k = i; k < end; ++k) least = std::min(least, nearest(k));
-            keys.push_back(depth_key(work, least, static_cast<std::uint32_t>(i) | kWhole));
-        } else {
-            for (std::size_t k = i; k < end; ++k)
-                keys.push_back(depth_key(work, nearest(k), static_cast<std::uint32_t>(k)));
+        if (is_cluster(work, list, i)) {
+            keys.push_back(depth_key(work, nearest_of(i, end), static_cast<std::uint32_t>(i) | kWhole));
+            i = end;
         }
-        i = end;
+        for (; i < end; ++i) keys.push_back(depth_key(work, nearest(i), static_cast<std::uint32_t>(i)));
     }
     sort_keys(keys);
     ClusteredOrder order;
     order.entries.reserve(list.size());
+    order.nearest.reserve(list.size());
     for (const std::uint64_t key : keys) {
         const auto place = static_cast<std::uint32_t>(key);
-        if ((place & kWhole) == 0) {
-            order.entries.push_back(list[place]);
-            continue;
-        }
-        order.clusters.push_back(static_cast<std::uint32_t>(order.entries.size()));
+        const std::size_t count = (place & kWhole) == 0 ? 1 : kClusterSize;
+        if (count != 1) order.clusters.push_back(static_cast<std::uint32_t>(order.entries.size()));
         const auto first = list.begin() + (place & ~kWhole);
-        order.entries.insert(order.entries.end(), first, first + kClusterSize);
+        order.entries.insert(order.entries.end(), first, first + count);
+        order.nearest.insert(order.nearest.end(), count,
+                             depth_of(work, std::bit_cast<float>(static_cast<std::uint32_t>(key >> 32))));
     }
     return order;
 }

@@ -138,6 +138,7 @@ struct TileState {
             const Domain d = s < stratum_count ? a.domains[s] : Domain{0, 0, 0, 0, 2, -2};
             u[0][s] = d.u0, v[0][s] = d.v0, t[0][s] = d.t0;
             u[1][s] = d.u1, v[1][s] = d.v1, t[1][s] = d.t1;
+            vector_span = std::max(vector_span, d.t1 - d.t0);
         }
         for (int b = 0; b < kBlocksPerCell; ++b) {
             const int column = b % kCellBlocks, row = b / kCellBlocks;
@@ -160,6 +161,7 @@ struct TileState {
     // Least [0] and greatest [1] coordinates of the strata, padded to whole vectors with empty ones.
     HWY_ALIGN float u[2][kMaxStrata], v[2][kMaxStrata], t[2][kMaxStrata];
     int stratum_count;
+    float vector_span = 0;                           // of the shutter: the longest stratum
     HWY_ALIGN std::uint64_t masks[kMaxStrata] = {};  // room: blocks of each stratum
     float block_size, per_block, middle;             // pixels a side, one over it, the cell's middle in blocks
     HWY_ALIGN float column_of_block[kBlocksPerCell], row_of_block[kBlocksPerCell];

@@ -1,5 +1,6 @@
 // The two passes over a triangle's work list: the edges' half-planes refuse vectors that hit nothing, then the exact
-// test, the same decisions as cover/exact.cpp bit for bit, with depth and writes.
+// test, the same decisions as cover/exact.cpp bit for bit, with depth and writes. Compiled once for each CPU target
+// (see cover_vectors.cpp).
 
 #if defined(PENTAPRISM_COVER_VECTOR_TEST_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef PENTAPRISM_COVER_VECTOR_TEST_INL_H
@@ -9,8 +10,8 @@
 #endif
 
 #include "cover/exact.h"
-#include "cover/half_planes-inl.h"
 #include "cover/lanes-inl.h"
+#include "cover/path_time-inl.h"
 #include "cover/vector_opacity-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,8 +19,7 @@ namespace pentaprism {
 namespace HWY_NAMESPACE {
 
 // What of the general test a triangle needs. Adding u*0 or t*0 is exact: the shorter kernels give the same bits.
-enum class Moves { kNot, kStraight, kInPieces };  // kInPieces: samples of other segments of the path are not ours
-enum class Seen { kFront, kBack, kBoth };         // the sides that some sample may see
+enum class Seen { kFront, kBack, kBoth };  // the sides that some sample may see
 template <Moves kMovesT, bool kDefocusT, Seen kSeenT, bool kFineT>
 struct Kind {
     static constexpr bool kFine = kFineT;  // the samples are those of FineLens
@@ -28,20 +28,21 @@ struct Kind {
     static constexpr Seen kSeen = kSeenT;
 };
 
-// Pass 1: keeps the vectors of the work list that have a sample inside the half-planes of all three edges of a triangle
-// of the batch.
-template <bool kMotion, bool kDefocus, bool kFine>
-std::size_t keep_within_edges(TileState& state, const HalfPlanes& H, int triangle, std::size_t job_count) {
+// Pass 1: keeps the vectors of the work list that have a sample of the tested segments inside the half-planes of all
+// three edges.
+template <Moves kMoves, bool kDefocus, bool kFine>
+std::size_t keep_within_edges(TileState& state, const Tested& tested, std::size_t job_count) {
     const F f;
     constexpr int kEdge = HalfPlanes::kEdges;
-    Vec nx[3], ny[3], ku[3], kv[3], e[3], limit[3];
+    const HalfPlanes& H = tested.batch.planes;
+    Vec nx[3], ny[3], ku[3], kv[3], e[3], limit[3];  // of one segment
     for (int k = 0; k < 3; ++k) {
-        nx[k] = hn::Set(f, H.nx[kEdge + k][triangle]);
-        ny[k] = hn::Set(f, H.ny[kEdge + k][triangle]);
-        ku[k] = hn::Set(f, H.ku[kEdge + k][triangle]);
-        kv[k] = hn::Set(f, H.kv[kEdge + k][triangle]);
-        e[k] = hn::Set(f, H.e[kEdge + k][triangle]);
-        limit[k] = hn::Set(f, H.f[kEdge + k][triangle]);
+        nx[k] = hn::Set(f, H.nx[kEdge + k][tested.k]);
+        ny[k] = hn::Set(f, H.ny[kEdge + k][tested.k]);
+        ku[k] = hn::Set(f, H.ku[kEdge + k][tested.k]);
+        kv[k] = hn::Set(f, H.kv[kEdge + k][tested.k]);
+        e[k] = hn::Set(f, H.e[kEdge + k][tested.k]);
+        limit[k] = hn::Set(f, H.f[kEdge + k][tested.k]);
     }
     Job* HWY_RESTRICT jobs = state.jobs.data();
     const SampleVector* samples = state.arrangement.samples;
@@ -51,17 +52,25 @@ std::size_t keep_within_edges(TileState& state, const HalfPlanes& H, int triangl
         const SampleVector& s = samples[state.place<kFine>(job)];
         bool any = false;
         for (int lane = 0; lane < kLanes; lane += kWidth) {
+            const PathTime<kMoves> time(f, tested, s.t + lane);
+            const auto at = [&](const Vec(&one)[3], const float(&rows)[HalfPlanes::kCount][kLanes], int k) HWY_ATTR {
+                if constexpr (kMoves == Moves::kAlongPieces) return time.look_up(f, rows[kEdge + k]);
+                return one[k];
+            };
             const Vec x = hn::Load(f, s.x + lane), y = hn::Load(f, s.y + lane);
             Vec room[3];  // to the edge
             for (int k = 0; k < 3; ++k) {
-                Vec r = limit[k];
-                if constexpr (kMotion) r = hn::MulAdd(e[k], hn::Load(f, s.t + lane), r);
+                Vec r = at(limit, H.f, k);
+                if constexpr (kMoves != Moves::kNot) r = hn::MulAdd(at(e, H.e, k), hn::Load(f, s.t + lane), r);
                 if constexpr (kDefocus)
-                    r = hn::MulAdd(ku[k], hn::Load(f, s.u + lane), hn::MulAdd(kv[k], hn::Load(f, s.v + lane), r));
-                room[k] = hn::NegMulAdd(nx[k], x, hn::NegMulAdd(ny[k], y, r));
+                    r = hn::MulAdd(at(ku, H.ku, k), hn::Load(f, s.u + lane),
+                                   hn::MulAdd(at(kv, H.kv, k), hn::Load(f, s.v + lane), r));
+                room[k] = hn::NegMulAdd(at(nx, H.nx, k), x, hn::NegMulAdd(at(ny, H.ny, k), y, r));
             }
             const Vec least = hn::Min(hn::Min(room[0], room[1]), room[2]);
-            any |= !hn::AllFalse(f, hn::Ge(least, hn::Zero(f)));
+            Mask inside = hn::Ge(least, hn::Zero(f));
+            if constexpr (kSegments<kMoves>) inside = hn::And(inside, time.ours);
+            any |= !hn::AllFalse(f, inside);
         }
         jobs[count] = job;
         count += any;
@@ -72,24 +81,25 @@ std::size_t keep_within_edges(TileState& state, const HalfPlanes& H, int triangl
 // Where the three vertices are seen from sixteen samples (docs/develop/algorithms.md 1.5).
 struct Deltas {
     Vec x[3], y[3], w[3], z[3];
-    Vec tau;
 };
 
 template <class K>
-HWY_INLINE Deltas deltas(F f, const LocalTriangle& T, const SampleVector& s, int lane) {
+HWY_INLINE Deltas deltas(F f, const Tested& tested, const PathTime<K::kMoves>& time, const SampleVector& s, int lane) {
     Deltas D;
+    const LocalTriangle& T = tested.T;
+    const BlurBatch& B = tested.batch;
+    const auto at = [&](const float(&one)[3], const float(&rows)[3][kLanes], int i) HWY_ATTR {
+        if constexpr (K::kMoves == Moves::kAlongPieces) return time.look_up(f, rows[i]);
+        return hn::Set(f, one[i]);
+    };
     const Vec hx = hn::Load(f, s.x + lane), hy = hn::Load(f, s.y + lane);
-    Vec tau = hn::Zero(f);
-    if constexpr (K::kMotion) tau = hn::Load(f, s.t + lane);
-    if constexpr (K::kMoves == Moves::kInPieces) tau = hn::MulAdd(tau, hn::Set(f, T.segments), hn::Set(f, -T.segment));
-    D.tau = tau;
     for (int i = 0; i < 3; ++i) {
-        Vec x = hn::Set(f, T.qx[i]), y = hn::Set(f, T.qy[i]), w = hn::Set(f, T.qw[i]), c = hn::Set(f, T.qc[i]);
+        Vec x = at(T.qx, B.qx, i), y = at(T.qy, B.qy, i), w = at(T.qw, B.qw, i), c = at(T.qc, B.qc, i);
         if constexpr (K::kMotion) {
-            x = hn::MulAdd(tau, hn::Set(f, T.dx[i]), x);
-            y = hn::MulAdd(tau, hn::Set(f, T.dy[i]), y);
-            w = hn::MulAdd(tau, hn::Set(f, T.dw[i]), w);
-            if constexpr (K::kDefocus) c = hn::MulAdd(tau, hn::Set(f, T.dc[i]), c);
+            x = hn::MulAdd(time.tau, at(T.dx, B.dx, i), x);
+            y = hn::MulAdd(time.tau, at(T.dy, B.dy, i), y);
+            w = hn::MulAdd(time.tau, at(T.dw, B.dw, i), w);
+            if constexpr (K::kDefocus) c = hn::MulAdd(time.tau, at(T.dc, B.dc, i), c);
         }
         if constexpr (K::kDefocus) {
             x = hn::MulAdd(hn::Load(f, s.u + lane), c, x);
@@ -98,7 +108,7 @@ HWY_INLINE Deltas deltas(F f, const LocalTriangle& T, const SampleVector& s, int
         D.x[i] = hn::NegMulAdd(hx, w, x);
         D.y[i] = hn::NegMulAdd(hy, w, y);
         D.w[i] = w;
-        D.z[i] = T.orthographic ? hn::MulAdd(tau, hn::Set(f, T.dz[i]), hn::Set(f, T.qz[i])) : w;
+        D.z[i] = T.orthographic ? hn::MulAdd(time.tau, at(T.dz, B.dz, i), at(T.qz, B.qz, i)) : w;
     }
     return D;
 }
@@ -124,7 +134,7 @@ struct Decision {
     Mask inside, tied;
 };
 template <class K>
-HWY_INLINE Decision decide(F f, const Deltas& D, const Edges& E) {
+HWY_INLINE Decision decide(F f, const Edges& E, const PathTime<K::kMoves>& time) {
     const Vec zero = hn::Zero(f);
     Decision decision;
     if constexpr (K::kSeen == Seen::kBack) {
@@ -138,10 +148,8 @@ HWY_INLINE Decision decide(F f, const Deltas& D, const Edges& E) {
         const Vec most = hn::Max(hn::Max(E.e[0], E.e[1]), E.e[2]);
         decision = {hn::Or(decision.inside, hn::Lt(most, zero)), hn::Or(decision.tied, hn::Eq(most, zero))};
     }
-    if constexpr (K::kMoves == Moves::kInPieces) {
-        const Mask ours = hn::And(hn::Ge(D.tau, zero), hn::Lt(D.tau, hn::Set(f, 1.0f)));
-        decision = {hn::And(decision.inside, ours), hn::And(decision.tied, ours)};
-    }
+    if constexpr (kSegments<K::kMoves>)
+        decision = {hn::And(decision.inside, time.ours), hn::And(decision.tied, time.ours)};
     return decision;
 }
 
@@ -164,11 +172,37 @@ HWY_NOINLINE inline Mask decide_ties(F f, const CellCentre& centre, const LocalT
     return hn::RebindMask(f, hn::Lt(hn::Load(i, ask), hn::Zero(i)));
 }
 
+// The same for all segments: the scalar test, too, leaves other segments' samples alone.
+inline Mask decide_ties(F f, const TileState& state, const Tested& tested, const SampleVector& s, int lane, Mask tied,
+                        Vec& depth) {
+    Mask hit = decide_ties(f, state.centre, tested.T, s, lane, tied, depth);
+    for (int k = tested.k + 1; k < tested.k + tested.count; ++k) {
+        const LocalTriangle T = tested.T.behind ? at_camera_plane(state, tested.batch, k)
+                                                : local_triangle(tested.batch, k, state.work.frame);
+        hit = hn::Or(hit, decide_ties(f, state.centre, T, s, lane, tied, depth));
+    }
+    return hit;
+}
+
 // Lanes within the screen bounds of a triangle that reaches the camera plane.
-HWY_INLINE Mask in_box(F f, const CellCentre& centre, const LocalTriangle& T, Vec hx, Vec hy) {
+HWY_INLINE Mask in_box(F f, const CellCentre& centre, const Vec (&box)[4], Vec hx, Vec hy) {
     const Vec gx = hn::Add(hn::Set(f, centre.x), hx), gy = hn::Add(hn::Set(f, centre.y), hy);
-    return hn::And(hn::And(hn::Ge(gx, hn::Set(f, T.box[0])), hn::Le(gx, hn::Set(f, T.box[1]))),
-                   hn::And(hn::Ge(gy, hn::Set(f, T.box[2])), hn::Le(gy, hn::Set(f, T.box[3]))));
+    return hn::And(hn::And(hn::Ge(gx, box[0]), hn::Le(gx, box[1])), hn::And(hn::Ge(gy, box[2]), hn::Le(gy, box[3])));
+}
+HWY_INLINE Mask in_box(F f, const CellCentre& centre, const LocalTriangle& T, Vec hx, Vec hy) {
+    const Vec box[4] = {hn::Set(f, T.box[0]), hn::Set(f, T.box[1]), hn::Set(f, T.box[2]), hn::Set(f, T.box[3])};
+    return in_box(f, centre, box, hx, hy);
+}
+// The box of each sample's segment.
+template <Moves kMoves>
+HWY_INLINE Mask in_box(F f, const CellCentre& centre, const Tested& tested, const PathTime<kMoves>& time, Vec hx,
+                       Vec hy) {
+    if constexpr (kMoves == Moves::kAlongPieces) {
+        Vec box[4];
+        for (int side = 0; side < 4; ++side) box[side] = time.look_up(f, tested.batch.box[side]);
+        return in_box(f, centre, box, hx, hy);
+    }
+    return in_box(f, centre, tested.T, hx, hy);
 }
 
 // Whether near and far distance must be asked: depths lie between those of the corners, which move monotonically.
@@ -214,11 +248,12 @@ class LanesOfJob {
 
 // Pass 2: the exact test, depth, opacity and writes.
 template <class K>
-void write_hits(TileState& state, const LocalTriangle& T, std::size_t count) {
+void write_hits(TileState& state, const Tested& tested, std::size_t count) {
     const F f;
     const U u;
     const Vec zero = hn::Zero(f);
-    const bool ask_range = may_leave_depth_range(T);
+    const LocalTriangle& T = tested.T;
+    const bool ask_range = tested.count > 1 || may_leave_depth_range(T);
     const auto triangle = hn::Set(u, T.triangle);
     const OpacityTerms terms =
         T.alpha_tested && count != 0 ? opacity_terms(state.work.frame, T.triangle) : OpacityTerms();
@@ -233,12 +268,14 @@ void write_hits(TileState& state, const LocalTriangle& T, std::size_t count) {
         std::uint32_t* triangles = &state.hits.triangle[entry];
         Vec farthest = zero;
         for (int lane = 0; lane < kLanes; lane += kWidth) {
-            const Deltas D = deltas<K>(f, T, s, lane);
+            const PathTime<K::kMoves> time(f, tested, s.t + lane);
+            const Deltas D = deltas<K>(f, tested, time, s, lane);
             const Edges E = edges(D);
-            const Decision decision = decide<K>(f, D, E);
+            const Decision decision = decide<K>(f, E, time);
             Mask hit = decision.inside;
             if (T.behind)
-                hit = hn::And(hit, in_box(f, state.centre, T, hn::Load(f, s.x + lane), hn::Load(f, s.y + lane)));
+                hit = hn::And(hit,
+                              in_box(f, state.centre, tested, time, hn::Load(f, s.x + lane), hn::Load(f, s.y + lane)));
             const Vec sum = hn::Add(hn::Add(E.e[0], E.e[1]), E.e[2]);
             Vec depth = hn::Add(hn::Add(hn::Mul(E.e[0], D.z[0]), hn::Mul(E.e[1], D.z[1])), hn::Mul(E.e[2], D.z[2]));
             depth = hn::Div(depth, sum);
@@ -247,7 +284,7 @@ void write_hits(TileState& state, const LocalTriangle& T, std::size_t count) {
             if (ask_range)
                 hit = hn::And(hit, hn::And(hn::Ge(depth, hn::Set(f, T.z_near)), hn::Le(depth, hn::Set(f, T.z_far))));
             if (HWY_UNLIKELY(!hn::AllFalse(f, decision.tied)))
-                hit = hn::Or(hit, decide_ties(f, state.centre, T, s, lane, decision.tied, depth));
+                hit = hn::Or(hit, decide_ties(f, state, tested, s, lane, decision.tied, depth));
             covered += static_cast<std::int64_t>(hn::CountTrue(f, hit));
             const Vec stored = hn::Load(f, depths + lane);
             const auto stored_triangle = hn::Load(u, triangles + lane);
@@ -273,9 +310,9 @@ void write_hits(TileState& state, const LocalTriangle& T, std::size_t count) {
 }
 
 template <class K>
-void cover_jobs(TileState& state, const LocalTriangle& T, const HalfPlanes* H, int k, std::size_t jobs) {
-    if (H != nullptr) jobs = keep_within_edges<K::kMotion, K::kDefocus, K::kFine>(state, *H, k, jobs);
-    write_hits<K>(state, T, jobs);
+void cover_jobs(TileState& state, const Tested& tested, bool ask_edges, std::size_t jobs) {
+    if (ask_edges) jobs = keep_within_edges<K::kMoves, K::kDefocus, K::kFine>(state, tested, jobs);
+    write_hits<K>(state, tested, jobs);
 }
 
 }  // namespace HWY_NAMESPACE

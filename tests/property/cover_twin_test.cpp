@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "cover/front_to_back.h"
 #include "cover/wide_blur.h"
@@ -251,6 +252,52 @@ TEST_P(CoverTwins, AgreeForTrianglesThatRushAtTheCamera) {
     }
 }
 
+// Vectors cross the segments, and each sample takes its own.
+TEST_P(CoverTwins, AgreeForPathsOfManySegments) {
+    Random r(35);
+    for (const int segments : {2, 7, 8, 16, 32, 64})
+        for (const int count : {spp(16), spp(4), 7}) {
+            Soup s = soup();
+            s.segments = segments;
+            s.single_sided = segments == 16;
+            s.orthographic = segments == 32 && count == 7;
+            if (segments == 8) s.alpha = AlphaMode::kBlend;
+            s.triangles = 2;
+            EXPECT_GT(expect_twins(make_soup(r, s), samples(count), segments == 64 ? 16 : 32, whole(s)), 0u);
+        }
+}
+
+TEST(CoverTwinsOfOneFrame, SegmentsThatVectorsCrossStayTogether) {
+    Random r(36);
+    Soup s;
+    s.segments = 8;
+    s.triangles = 30;
+    const Frame frame = make_soup(r, s);
+    const PixelRect whole{0, s.width, 0, s.height};
+    const Bins bins(frame, 32, whole);
+    std::size_t together = 0;
+    for (const Tile tile : {Tile{0, 0, 32, 32}, Tile{32, 0, 64, 32}}) {
+        const auto listed = bins.tile(tile.x0, tile.y0);
+        const TileWork work{frame, table(16, Grouping::kBoth, 1.0), bins.triangles(), listed, tile, nullptr};
+        const ClusteredOrder order = clustered_front_to_back(work, 0.25f);
+        EXPECT_TRUE(std::is_permutation(listed.begin(), listed.end(), order.entries.begin(), order.entries.end()));
+        EXPECT_TRUE(std::is_sorted(order.nearest.begin(), order.nearest.end()));
+        std::map<std::pair<std::uint32_t, int>, std::size_t> place;
+        const auto binned = [&](std::size_t i) { return bins.triangles()[order.entries[i]]; };
+        for (std::size_t i = 0; i < order.entries.size(); ++i) {
+            EXPECT_LE(order.nearest[i], nearest_depth(work, binned(i)));
+            place[{binned(i).triangle, binned(i).segment}] = i;
+        }
+        for (const auto& [segment, i] : place) {
+            const auto next = place.find({segment.first, segment.second + 1});
+            if (next == place.end()) continue;
+            EXPECT_EQ(next->second, i + 1);
+            ++together;
+        }
+    }
+    EXPECT_GT(together, 100u);
+}
+
 // A mesh of triangles of about a pixel, all of which blur alike: what clusters are made of. The first ones of some
 // reach the camera plane.
 Frame make_mesh(Random& r, const Soup& soup, std::uint32_t side = 40, double widest_circle = 12.0) {
@@ -302,7 +349,7 @@ TEST_P(CoverTwins, AgreeForClusters) {
         const Bins bins(frame, 32, whole(s));
         const auto listed = bins.tile(0, 0);
         const ClusteredOrder order =
-            clustered_front_to_back({frame, table, bins.triangles(), listed, {0, 0, 32, 32}, nullptr});
+            clustered_front_to_back({frame, table, bins.triangles(), listed, {0, 0, 32, 32}, nullptr}, 0.25f);
         clustered += kLanes * order.clusters.size();
         walked += order.entries.size();
         EXPECT_TRUE(std::is_permutation(listed.begin(), listed.end(), order.entries.begin(), order.entries.end()));
@@ -321,7 +368,7 @@ TEST(CoverTwinsOfOneFrame, AgreeForWideBlur) {
             s.height = 60;  // the lower tiles are cut
             s.ratio = tiles % 3 == 1 ? 1.7 : 1.0;
             if (tiles % 4 == 0) s.alpha = AlphaMode::kBlend;
-            const Frame frame = make_mesh(r, s, 8, 1500.0);
+            const Frame frame = make_mesh(r, s, 8, 1500.0);  // finer cells cross its segments
             const SampleTable& samples = table(spp, grouping, s.ratio);
             const PixelRect whole{0, s.width, 0, s.height};
             EXPECT_GT(expect_twins(frame, samples, 32, whole), 0u);

@@ -15,6 +15,7 @@ struct Soup {
     double magnify = 1.0;  ///< of all lengths in space: the picture stays, the numbers grow
     AlphaMode alpha = AlphaMode::kOpaque;
     int triangles = 11;  ///< of each part; one part for each of `classes`
+    int segments = 0;    ///< of what moves; 0: from one to five
     std::vector<Hard> classes{kHardClasses.begin(), kHardClasses.end()};
 };
 
@@ -67,7 +68,7 @@ inline Frame make_soup(Random& r, const Soup& soup) {
         part.first_point = static_cast<std::uint32_t>(frame.points.size());
         part.vertex_count = 3 * part.triangle_count;
         part.moves = soup.motion && hard != Hard::kStatic;
-        part.segments = part.moves ? r.between(1, 5) : 1;
+        if (part.moves) part.segments = soup.segments != 0 ? soup.segments : r.between(1, 5);
         part.two_sided = !soup.single_sided || r.chance(0.3);
         part.alpha_mode = soup.alpha;
         part.material = soup.alpha == AlphaMode::kOpaque ? kNone : 0;
