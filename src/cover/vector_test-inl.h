@@ -311,7 +311,12 @@ void write_hits(TileState& state, const Tested& tested, std::size_t count) {
 
 template <class K>
 void cover_jobs(TileState& state, const Tested& tested, bool ask_edges, std::size_t jobs) {
-    if (ask_edges) jobs = keep_within_edges<K::kMoves, K::kDefocus, K::kFine>(state, tested, jobs);
+    // Vectors that lie in one segment need not be asked which.
+    constexpr Moves kAlone = K::kMoves == Moves::kInPieces ? Moves::kStraight : K::kMoves;
+    if (ask_edges && tested.batch.segments[tested.k] * state.vector_span <= 1.0f)
+        jobs = keep_within_edges<kAlone, K::kDefocus, K::kFine>(state, tested, jobs);
+    else if (ask_edges)
+        jobs = keep_within_edges<K::kMoves, K::kDefocus, K::kFine>(state, tested, jobs);
     write_hits<K>(state, tested, jobs);
 }
 
