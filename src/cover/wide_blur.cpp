@@ -56,7 +56,8 @@ bool blurs_widely(const TileWork& work) {
         const Spread spread = spread_of(work.frame, binned);
         const Part& part = work.frame.parts[work.frame.part_of[binned.triangle]];
         const float segments = part.moves && quarters ? static_cast<float>(part.segments) : 1.0f;
-        // Vectors of a quarter are listed for the segments that share time with it, others for each segment.
+        // Vectors of a quarter are listed for the segments that share time with it, others for each segment. (That
+        // segments which a vector crosses are listed together makes no difference that could be measured.)
         const float of_segment = quarters ? std::min(1.0f, 0.25f * segments) : 1.0f;
         const float of_vectors = std::max(0.25f, 1.0f / segments);
         coarse += of_vectors * listed(spread, kBlockSize, 0.25f, of_segment);
