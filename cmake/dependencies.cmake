@@ -17,6 +17,14 @@ pkg_check_modules(murmurhash REQUIRED IMPORTED_TARGET libmurmurhash)
 find_path(TINYGLTF_INCLUDE_DIR tiny_gltf.h REQUIRED)
 find_path(TINYOBJ_INCLUDE_DIR tiny_obj_loader.h REQUIRED)
 
+set(PENTAPRISM_HAVE_MIMALLOC OFF)
+if(PENTAPRISM_MIMALLOC AND NOT PENTAPRISM_SANITIZE)  # sanitizers bring their own allocator
+  find_package(mimalloc 2.0 CONFIG QUIET)
+  if(TARGET mimalloc)
+    set(PENTAPRISM_HAVE_MIMALLOC ON)
+  endif()
+endif()
+
 set(PENTAPRISM_HAVE_EMBREE OFF)
 if(PENTAPRISM_EMBREE)
   find_package(embree 3 CONFIG QUIET)

@@ -11,6 +11,7 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/memory.h"
 #include "cli/messages.h"
 #include "cli/ranks.h"
 
@@ -112,6 +113,7 @@ int guarded_main(int argc, char** argv) {
 }  // namespace pentaprism::cli
 
 int main(int argc, char** argv) {
+    pentaprism::cli::ask_for_huge_pages();
     pentaprism::cli::watch_signals();
     return pentaprism::cli::guarded_main(argc, argv);
 }
