@@ -1,9 +1,12 @@
 #pragma once
-// Vectors that leave new elements as they are: for large arrays of which every element is written before it is read.
+// Vectors that leave new elements as they are: for large arrays of which every element is written before it is read. So
+// the threads that write them touch their memory first, each its part.
 
 #include <memory>
 #include <new>
 #include <vector>
+
+#include "base/large_memory.h"
 
 namespace pentaprism {
 
@@ -16,6 +19,14 @@ struct UninitializedAllocator : std::allocator<T> {
     struct rebind {
         using other = UninitializedAllocator<U>;
     };
+    T* allocate(std::size_t n) {
+        if (n < kLargeMemory / sizeof(T)) return std::allocator<T>::allocate(n);
+        return static_cast<T*>(allocate_large(n * sizeof(T)));
+    }
+    void deallocate(T* place, std::size_t n) {
+        if (n < kLargeMemory / sizeof(T)) return std::allocator<T>::deallocate(place, n);
+        free_large(place);
+    }
     template <class U>
     void construct(U* place) {
         ::new (static_cast<void*>(place)) U;
