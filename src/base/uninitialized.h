@@ -1,5 +1,6 @@
 #pragma once
-// Vectors that leave new elements as they are: for large arrays of which every element is written before it is read.
+// Vectors that leave new elements as they are: for large arrays of which every element is written before it is read. So
+// the threads that write them touch their memory first, each its part.
 
 #include <memory>
 #include <new>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include "base/parallel.h"
 #include "bin/bound_batch.h"
@@ -9,7 +10,9 @@
 namespace pentaprism {
 namespace {
 
-constexpr std::size_t kChunk = 4096;  // triangles bounded at a time
+constexpr std::size_t kChunk = 1024;         // triangles bounded at a time
+constexpr std::size_t kSharesPerThread = 4;  // of the sort, so that a thread that comes late gets fewer
+
 }  // namespace
 
 Bins::Bins(const Frame& frame, int tile_size, const PixelRect& limits)
@@ -18,6 +21,11 @@ Bins::Bins(const Frame& frame, int tile_size, const PixelRect& limits)
       first_y_(limits.y0 / tile_size),
       columns_((limits.x1 + tile_size - 1) / tile_size - first_x_),
       rows_((limits.y1 + tile_size - 1) / tile_size - first_y_) {
+    bound(frame, limits);
+    sort();
+}
+
+void Bins::bound(const Frame& frame, const PixelRect& limits) {
     const std::size_t triangle_count = frame.triangle_count(), chunks = (triangle_count + kChunk - 1) / kChunk;
     std::vector<std::vector<BinnedTriangle>> bounded(chunks);
     parallel_for(chunks, [&](std::size_t chunk) {
@@ -25,38 +33,52 @@ Bins::Bins(const Frame& frame, int tile_size, const PixelRect& limits)
         bound_triangles(frame, static_cast<std::uint32_t>(chunk * kChunk), static_cast<std::uint32_t>(last), limits,
                         bounded[chunk]);
     });
+    std::vector<std::size_t> first(chunks);
     std::size_t total = 0;
-    for (const auto& chunk : bounded) total += chunk.size();
-    triangles_.reserve(total);
-    for (auto& chunk : bounded) {
-        triangles_.insert(triangles_.end(), chunk.begin(), chunk.end());
-        chunk = {};
+    for (std::size_t chunk = 0; chunk < chunks; ++chunk) {
+        first[chunk] = total;
+        total += bounded[chunk].size();
     }
+    triangles_.resize(total);
+    parallel_for(chunks, [&](std::size_t chunk) {
+        std::copy(bounded[chunk].begin(), bounded[chunk].end(), triangles_.begin() + first[chunk]);
+        bounded[chunk] = {};
+    });
+}
 
-    // Each worker owns a band of tile rows and walks all triangles in order, once to count and once to fill.
-    const std::size_t tiles = static_cast<std::size_t>(columns_) * rows_;
-    const int bands = std::min(rows_, thread_count());
+// A counting sort. Equal shares of the triangles, in order, are counted by tile, each share into a row of its own; the
+// counts become places, tile after tile and in each tile share after share; then each share writes to its places.
+void Bins::sort() {
+    const std::size_t shares = kSharesPerThread * thread_count();
     const int shift = std::countr_zero(static_cast<unsigned>(tile_size_));
-    auto for_each_entry = [&](int band, auto&& visit) {
-        const int row0 = first_y_ + rows_ * band / bands, row1 = first_y_ + rows_ * (band + 1) / bands;
-        for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
+    auto for_each_entry = [&](std::size_t share, auto&& visit) {
+        const std::size_t end = triangles_.size() * (share + 1) / shares;
+        for (std::size_t i = triangles_.size() * share / shares; i < end; ++i) {
             const BinnedTriangle& t = triangles_[i];
-            const int y0 = std::max(row0, t.y0 >> shift), y1 = std::min(row1, ((t.y1 - 1) >> shift) + 1);
             const int x0 = t.x0 >> shift, x1 = ((t.x1 - 1) >> shift) + 1;
+            const int y0 = t.y0 >> shift, y1 = ((t.y1 - 1) >> shift) + 1;
             for (int y = y0; y < y1; ++y)
                 for (int x = x0; x < x1; ++x)
                     visit(static_cast<std::size_t>(y - first_y_) * columns_ + (x - first_x_), i);
         }
     };
-    offsets_.assign(tiles + 1, 0);
-    parallel_for(bands, [&](std::size_t band) {
-        for_each_entry(static_cast<int>(band), [&](std::size_t tile, std::uint32_t) { ++offsets_[tile + 1]; });
+    const std::size_t tiles = static_cast<std::size_t>(columns_) * rows_;
+    std::vector<std::vector<std::size_t>> next(shares);  // [share][tile]
+    parallel_for(shares, [&](std::size_t share) {
+        next[share].assign(tiles, 0);
+        for_each_entry(share, [&](std::size_t tile, std::size_t) { ++next[share][tile]; });
     });
-    for (std::size_t i = 0; i < tiles; ++i) offsets_[i + 1] += offsets_[i];
-    entries_.resize(offsets_[tiles]);
-    std::vector<std::size_t> next(offsets_.begin(), offsets_.end() - 1);
-    parallel_for(bands, [&](std::size_t band) {
-        for_each_entry(static_cast<int>(band), [&](std::size_t tile, std::uint32_t i) { entries_[next[tile]++] = i; });
+    offsets_.assign(tiles + 1, 0);
+    std::size_t place = 0;
+    for (std::size_t tile = 0; tile < tiles; ++tile) {
+        for (std::vector<std::size_t>& row : next) place += std::exchange(row[tile], place);
+        offsets_[tile + 1] = place;
+    }
+    entries_.resize(place);
+    parallel_for(shares, [&](std::size_t share) {
+        for_each_entry(share, [&](std::size_t tile, std::size_t i) {
+            entries_[next[share][tile]++] = static_cast<std::uint32_t>(i);
+        });
     });
 }
 

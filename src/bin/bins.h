@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "base/uninitialized.h"
 #include "bound/facing.h"
 #include "bound/screen_bounds.h"
 #include "frame/frame.h"
@@ -33,10 +34,13 @@ class Bins {
     std::span<const std::uint32_t> tile(int x0, int y0) const;
 
   private:
+    void bound(const Frame& frame, const PixelRect& limits);
+    void sort();
+
     int tile_size_, first_x_, first_y_, columns_, rows_;  // tiles
-    std::vector<BinnedTriangle> triangles_;
+    UninitializedVector<BinnedTriangle> triangles_;
     std::vector<std::size_t> offsets_;
-    std::vector<std::uint32_t> entries_;
+    UninitializedVector<std::uint32_t> entries_;
 };
 
 }  // namespace pentaprism

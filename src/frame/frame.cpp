@@ -76,6 +76,35 @@ PosedPart pose_part(const Scene& scene, const View& view, const Placement& place
     return posed;
 }
 
+constexpr std::size_t kAtOnce = 1 << 14;  // points or triangles that one thread copies: a part may be all of the frame
+
+// Copies part `number` to its place in the frame.
+void put_part(const PosedPart& posed, std::uint32_t number, Frame& frame) {
+    const Part& part = frame.parts[number];
+    const auto& [points, depths] = posed.knots;
+    parallel_ranges(points.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
+        const std::size_t to = part.first_point + begin;
+        std::copy(points.begin() + begin, points.begin() + end, frame.points.begin() + to);
+        if (!depths.empty()) std::copy(depths.begin() + begin, depths.begin() + end, frame.depths.begin() + to);
+    });
+    const CutTriangles& cut = posed.cut;
+    const bool is_cut = !cut.pieces.empty();
+    const Primitive& primitive = frame.scene->meshes[part.placement.mesh].primitives[part.placement.primitive];
+    const std::vector<std::uint32_t>& indices = is_cut ? cut.indices : primitive.indices;
+    parallel_ranges(part.triangle_count, kAtOnce, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            const std::size_t triangle = part.first_triangle + t;
+            std::uint32_t* corner = &frame.corners[3 * triangle];
+            for (int k = 0; k < 3; ++k) corner[k] = part.first_point + indices[3 * t + k];
+            if (part.mirrored) std::swap(corner[1], corner[2]);
+            frame.part_of[triangle] = number;
+            if (!is_cut) continue;
+            frame.pieces[triangle] = cut.pieces[t];
+            if (part.mirrored) mirror(frame.pieces[triangle]);
+        }
+    });
+}
+
 }  // namespace
 
 std::array<std::uint32_t, 3> Frame::vertices(std::uint32_t triangle) const {
@@ -134,26 +163,7 @@ Frame pose_frame(const Scene& scene, const View& view, std::span<const Index> an
     for (const PosedPart& p : posed) frame.parts.push_back(p.part);
 
     parallel_for(posed.size(), [&](std::size_t i) {
-        const Part& part = frame.parts[i];
-        const auto& [part_points, part_depths] = posed[i].knots;
-        std::copy(part_points.begin(), part_points.end(), frame.points.begin() + part.first_point);
-        std::copy(part_depths.begin(), part_depths.end(),
-                  frame.depths.begin() + (view.perspective ? 0 : part.first_point));
-        const bool is_cut = !posed[i].cut.pieces.empty();
-        const auto& indices = is_cut ? posed[i].cut.indices
-                                     : scene.meshes[part.placement.mesh].primitives[part.placement.primitive].indices;
-        if (is_cut)
-            std::copy(posed[i].cut.pieces.begin(), posed[i].cut.pieces.end(),
-                      frame.pieces.begin() + part.first_triangle);
-        for (std::uint32_t t = 0; t < part.triangle_count; ++t) {
-            std::uint32_t* corner = &frame.corners[3 * std::size_t{part.first_triangle + t}];
-            for (int k = 0; k < 3; ++k) corner[k] = part.first_point + indices[3 * std::size_t{t} + k];
-            if (part.mirrored) {
-                std::swap(corner[1], corner[2]);
-                if (is_cut) mirror(frame.pieces[part.first_triangle + t]);
-            }
-            frame.part_of[part.first_triangle + t] = static_cast<std::uint32_t>(i);
-        }
+        put_part(posed[i], static_cast<std::uint32_t>(i), frame);
         posed[i] = {};
     });
     return frame;

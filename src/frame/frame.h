@@ -13,6 +13,7 @@
 #include <span>
 #include <vector>
 
+#include "base/uninitialized.h"
 #include "camera/view.h"
 #include "scene/pose.h"
 #include "scene/texture.h"
@@ -51,14 +52,14 @@ struct Frame {
     const Scene* scene = nullptr;  ///< not owned; outlives the frame
     View view;
     std::vector<Part> parts;
-    std::vector<glm::vec4> points;             ///< x, y, w, c of each vertex at each knot of its part
-    std::vector<float> depths;                 ///< orthographic cameras only: z of each point (else z = w)
-    std::vector<std::uint32_t> corners;        ///< 3 for each triangle: into `points`, at knot 0
-    std::vector<std::uint32_t> part_of;        ///< for each triangle: into `parts`
-    std::vector<Piece> pieces;                 ///< for each triangle; empty: none is cut
-    std::vector<Index> animations;             ///< clips that play
-    Pose middle;                               ///< the scene at mid-shutter, the shading time
-    std::shared_ptr<const Textures> textures;  ///< set by who renders, once for all frames; null: factors alone count
+    UninitializedVector<glm::vec4> points;       ///< x, y, w, c of each vertex at each knot of its part
+    UninitializedVector<float> depths;           ///< orthographic cameras only: z of each point (else z = w)
+    UninitializedVector<std::uint32_t> corners;  ///< 3 for each triangle: into `points`, at knot 0
+    UninitializedVector<std::uint32_t> part_of;  ///< for each triangle: into `parts`
+    std::vector<Piece> pieces;                   ///< for each triangle; empty: none is cut
+    std::vector<Index> animations;               ///< clips that play
+    Pose middle;                                 ///< the scene at mid-shutter, the shading time
+    std::shared_ptr<const Textures> textures;    ///< set by who renders, once for all frames; null: factors alone count
 
     std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(part_of.size()); }
 

@@ -34,6 +34,7 @@ const VertexPaths::Instant& VertexPaths::at(double t) {
 }
 
 std::vector<const VertexPaths::Instant*> VertexPaths::at_quarters(int pieces) {
+    moments_.make(4 * pieces);
     std::vector<const Instant*> times;
     for (int i = 0; i <= 4 * pieces; ++i) times.push_back(&at(i / (4.0 * pieces)));
     return times;
@@ -93,6 +94,7 @@ bool VertexPaths::stand_still() {
 }
 
 void VertexPaths::make_room(std::size_t knot_count, KnotVertices& knots) const {
+    knots.points.clear();  // what fewer pieces left is not copied
     knots.points.resize(knot_count * primitive_.positions.size());
     if (!view_.perspective) knots.depths.resize(knots.points.size());
 }

@@ -132,17 +132,17 @@ FrameInfo FrameTiles::describe(std::span<const Index> animations, double number)
     info.fy = view.fy;
     copy_matrix(to_camera, info.world_to_camera);
     copy_matrix(projection * to_camera, info.world_to_ndc);
-    for (int k = 0; k <= info.max_motion_segments; ++k) {
-        FrameInfo::Knot knot;
+    const bool one_instant = view.shutter.close == view.shutter.open;
+    info.knots.resize(one_instant ? 1 : static_cast<std::size_t>(info.max_motion_segments) + 1);
+    parallel_for(info.knots.size(), [&](std::size_t k) {
+        FrameInfo::Knot& knot = info.knots[k];
         knot.time = view.shutter.at(static_cast<double>(k) / info.max_motion_segments);
         const Pose pose = evaluate(*frame_.scene, animations, knot.time);
         copy_matrix(world_to_camera(view, pose), knot.world_to_camera);
         const View now = view_at(*frame_.scene, view, pose);
         knot.fx = now.fx, knot.fy = now.fy;
         knot.lens_radius = now.lens.radius, knot.focus_distance = now.lens.focus_distance;
-        info.knots.push_back(knot);
-        if (view.shutter.close == view.shutter.open) break;  // one instant
-    }
+    });
     return info;
 }
 

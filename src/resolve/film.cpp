@@ -3,16 +3,26 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
+
+#include "base/parallel.h"
 
 namespace pentaprism {
+namespace {
+
+constexpr std::size_t kRowsAtOnce = 16;  // by one thread
+
+}  // namespace
 
 Film::Film(const FilmSettings& settings)
     : settings_(settings),
       width_(settings.x1 - settings.x0),
       rows_(settings.band_rows + 2 * settings.reach + 1),
       next_row_(settings.y0) {
-    pixels_.assign(static_cast<std::size_t>(width_) * rows_, Pixel{{}, std::numeric_limits<float>::infinity()});
+    // By all threads: most of this time is the system's, which hands out memory.
+    pixels_.resize(static_cast<std::size_t>(width_) * rows_);
+    parallel_ranges(rows_, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+        std::fill(pixels_.begin() + begin * width_, pixels_.begin() + end * width_, kNothing);
+    });
 }
 
 Film::Pixel& Film::pixel(int x, int y) {
@@ -44,23 +54,25 @@ void Film::add(const TileSums& from) {
 
 PixelRows Film::take_rows(int rendered_to, bool last, int most) {
     const int whole = std::clamp(last ? settings_.y1 : rendered_to - settings_.reach, next_row_, settings_.y1);
-    const int first = next_row_, count = std::min(whole - first, most), end = first + count;
+    const int first = next_row_, count = std::min(whole - first, most);
     const std::size_t n = static_cast<std::size_t>(count) * width_;
     rgba_.resize(4 * n);
     z_.resize(n);
     const double scale = std::exp2(settings_.exposure);
-    std::size_t i = 0;
-    for (int y = first; y < end; ++y)
-        for (int x = settings_.x0; x < settings_.x1; ++x, ++i) {
-            Pixel& from = pixel(x, y);
-            const double weight = static_cast<double>(from.sums[4]);
-            const double divisor = weight > 0.0 ? 1.0 / weight : 0.0;
-            for (int c = 0; c < 3; ++c) rgba_[4 * i + c] = static_cast<float>(from.sums[c] * divisor * scale);
-            rgba_[4 * i + 3] = static_cast<float>(from.sums[3] * divisor);
-            z_[i] = from.depth;
-            from = Pixel{{}, std::numeric_limits<float>::infinity()};
-        }
-    next_row_ = end;
+    parallel_ranges(count, kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = begin; row < end; ++row)
+            for (int column = 0; column < width_; ++column) {
+                const std::size_t i = row * width_ + column;
+                Pixel& from = pixel(settings_.x0 + column, first + static_cast<int>(row));
+                const double weight = static_cast<double>(from.sums[4]);
+                const double divisor = weight > 0.0 ? 1.0 / weight : 0.0;
+                for (int c = 0; c < 3; ++c) rgba_[4 * i + c] = static_cast<float>(from.sums[c] * divisor * scale);
+                rgba_[4 * i + 3] = static_cast<float>(from.sums[3] * divisor);
+                z_[i] = from.depth;
+                from = kNothing;
+            }
+    });
+    next_row_ = first + count;
     return {first, count, width_, rgba_, z_};
 }
 

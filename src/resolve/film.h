@@ -11,6 +11,7 @@
 #include <pentaprism/render.h>
 #include <vector>
 
+#include "base/uninitialized.h"
 #include "resolve/tile_sums.h"
 
 namespace pentaprism {
@@ -41,16 +42,17 @@ class Film {
 
   private:
     struct Pixel {
-        PixelSums sums{};
+        PixelSums sums;
         float depth;
     };
+    static constexpr Pixel kNothing{{}, std::numeric_limits<float>::infinity()};
     Pixel& pixel(int x, int y);
 
     FilmSettings settings_;
     int width_, rows_;
-    int next_row_;               // the first that was not taken
-    std::vector<Pixel> pixels_;  // row y at (y mod rows_)
-    std::vector<float> rgba_, z_;
+    int next_row_;                       // the first that was not taken
+    UninitializedVector<Pixel> pixels_;  // row y at (y mod rows_)
+    UninitializedVector<float> rgba_, z_;
 };
 
 }  // namespace pentaprism

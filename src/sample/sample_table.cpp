@@ -214,16 +214,16 @@ SampleTable::SampleTable(int spp, std::uint32_t seed, const Lens& lens, Grouping
         for (std::size_t s = 0; s < domains_.size(); ++s) domains_[s].extend(block[s]);
 
     strata_.resize(static_cast<std::size_t>(cells) * cells);
-    for (int cell = 0; cell < cells * cells; ++cell) {
+    parallel_for(strata_.size(), [&](std::size_t cell) {
         std::map<std::pair<int, int>, std::uint64_t> masks;
         for (int i = 0; i < kBlocksPerCell; ++i) {
-            const std::size_t b = static_cast<std::size_t>(cell) * kBlocksPerCell + i;
+            const std::size_t b = cell * kBlocksPerCell + i;
             for (int slot = 0; slot < spp; ++slot) masks[{slot, stratum[b * spp + slot]}] |= std::uint64_t{1} << i;
         }
         for (const auto& [key, blocks_mask] : masks)
             strata_[cell].push_back(
                 {static_cast<std::uint16_t>(key.first), static_cast<std::uint16_t>(key.second), blocks_mask});
-    }
+    });
     if (wants_fine_lens) fine_lens_ = FineLens(spp, vectors_, fine_cells);
     if (shared)
         arrange_by_triple(*shared);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/aligned.h"
+#include "base/uninitialized.h"
 #include "camera/view.h"
 #include "sample/cats_eye.h"
 #include "sample/fine_lens.h"
@@ -124,8 +125,8 @@ class SampleTable {
     bool in_order_of_time_;
     SampleTimes times_;
     CatsEye eye_;
-    std::vector<SampleVector> vectors_;   // [cell of the period][block][slot]
-    std::vector<std::uint16_t> indices_;  // [block][slot][lane]
+    UninitializedVector<SampleVector> vectors_;   // [cell of the period][block][slot]
+    UninitializedVector<std::uint16_t> indices_;  // [block][slot][lane]
     std::vector<Domain> domains_;
     std::vector<std::vector<Stratum>> strata_;  // by cell of the period
     FineLens fine_lens_;

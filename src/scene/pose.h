@@ -79,7 +79,8 @@ class PlacedVertices {
     Affine matrix_;
 };
 
-/// World-space positions of all vertices of the placement; `out` has one entry for each.
+/// World-space positions of all vertices of the placement; `out` has one entry for each. By all threads, as what
+/// follows.
 void pose_positions(const Scene& scene, const Pose& pose, const Placement& placement, std::span<glm::dvec3> out);
 
 /// World-space normals (unit length), by the inverse transpose of the same transforms; for a mirrored placement they

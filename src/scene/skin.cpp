@@ -6,11 +6,14 @@
 #include <glm/matrix.hpp>
 #include <vector>
 
+#include "base/parallel.h"
 #include "scene/pose.h"
 
 namespace pentaprism {
 
 namespace {
+
+constexpr std::size_t kVerticesAtOnce = 2048;  // by one thread
 
 /// Adds the targets' displacements of vertices [first, first + values.size()), in the order of the targets.
 template <class Displacements>
@@ -50,33 +53,41 @@ void PlacedVertices::positions(std::size_t first, std::span<glm::dvec3> out) con
 }
 
 void pose_positions(const Scene& scene, const Pose& pose, const Placement& placement, std::span<glm::dvec3> out) {
-    PlacedVertices(scene, pose, placement).positions(0, out);
+    const PlacedVertices placed(scene, pose, placement);
+    parallel_ranges(out.size(), kVerticesAtOnce, [&](std::size_t begin, std::size_t end) {
+        placed.positions(begin, out.subspan(begin, end - begin));
+    });
 }
 
 void pose_normals(const Scene& scene, const Pose& pose, const Placement& placement, std::span<glm::vec3> out) {
     const PlacedVertices placed(scene, pose, placement);
-    const Primitive& primitive = placed.primitive();
-    std::vector<glm::dvec3> normals(primitive.normals.begin(), primitive.normals.end());
-    morph(placed, 0, normals,
-          [](const MorphTarget& target) -> const std::vector<glm::vec3>& { return target.normals; });
-    for (std::size_t i = 0; i < normals.size(); ++i) {
-        const glm::dvec3 normal = placed.transform(i).normal(normals[i]);
-        const double length = glm::length(normal);
-        out[i] = length > 0.0 ? glm::vec3(normal / length) : primitive.normals[i];
-    }
+    const std::vector<glm::vec3>& normals = placed.primitive().normals;
+    parallel_ranges(normals.size(), kVerticesAtOnce, [&](std::size_t begin, std::size_t end) {
+        std::vector<glm::dvec3> moved(normals.begin() + begin, normals.begin() + end);
+        morph(placed, begin, moved,
+              [](const MorphTarget& target) -> const std::vector<glm::vec3>& { return target.normals; });
+        for (std::size_t i = begin; i < end; ++i) {
+            const glm::dvec3 normal = placed.transform(i).normal(moved[i - begin]);
+            const double length = glm::length(normal);
+            out[i] = length > 0.0 ? glm::vec3(normal / length) : normals[i];
+        }
+    });
 }
 
 void pose_tangents(const Scene& scene, const Pose& pose, const Placement& placement,
                    std::span<const glm::vec4> tangents, bool mirrored, std::span<glm::vec4> out) {
     const PlacedVertices placed(scene, pose, placement);
-    std::vector<glm::dvec3> moved(tangents.begin(), tangents.end());
-    morph(placed, 0, moved, [](const MorphTarget& target) -> const std::vector<glm::vec3>& { return target.tangents; });
-    for (std::size_t i = 0; i < moved.size(); ++i) {
-        const glm::dvec3 t = placed.transform(i).vector(moved[i]);
-        const double length = glm::length(t);
-        out[i] = glm::vec4(length > 0.0 ? glm::vec3(t / length) : glm::vec3(0.0f),
-                           mirrored ? -tangents[i].w : tangents[i].w);
-    }
+    parallel_ranges(tangents.size(), kVerticesAtOnce, [&](std::size_t begin, std::size_t end) {
+        std::vector<glm::dvec3> moved(tangents.begin() + begin, tangents.begin() + end);
+        morph(placed, begin, moved,
+              [](const MorphTarget& target) -> const std::vector<glm::vec3>& { return target.tangents; });
+        for (std::size_t i = begin; i < end; ++i) {
+            const glm::dvec3 t = placed.transform(i).vector(moved[i - begin]);
+            const double length = glm::length(t);
+            out[i] = glm::vec4(length > 0.0 ? glm::vec3(t / length) : glm::vec3(0.0f),
+                               mirrored ? -tangents[i].w : tangents[i].w);
+        }
+    });
 }
 
 }  // namespace pentaprism

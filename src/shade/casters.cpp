@@ -160,14 +160,20 @@ void write_batch(const Casters& casters, const Part& part, CasterBatch& batch, B
     batch.count = 0;
 }
 
-std::size_t most_boxes(const Part& part) {
-    return part.triangle_count * static_cast<std::size_t>(part.moves ? part.segments : 1);
-}
+// Triangles of a part that one thread bounds.
+struct PartRange {
+    const Part* part;
+    std::uint32_t begin, end;
+    std::size_t most_boxes() const {
+        return (end - begin) * static_cast<std::size_t>(part->moves ? part->segments : 1);
+    }
+};
+constexpr std::uint32_t kTrianglesAtOnce = 4096;
 
-void bound_part(const Casters& casters, const Part& part, BoxWriter& out) {
+void bound_range(const Casters& casters, const PartRange& range, BoxWriter& out) {
+    const Part& part = *range.part;
     CasterBatch batch;
-    for (std::uint32_t triangle = part.first_triangle; triangle < part.first_triangle + part.triangle_count;
-         ++triangle) {
+    for (std::uint32_t triangle = range.begin; triangle < range.end; ++triangle) {
         const OpacityClass opacity = opacity_class(*casters.frame, triangle);
         if (opacity == OpacityClass::kClear) continue;
         for (int segment = 0; segment < (part.moves ? part.segments : 1); ++segment) {
@@ -180,20 +186,20 @@ void bound_part(const Casters& casters, const Part& part, BoxWriter& out) {
     if (batch.count > 0) write_batch(casters, part, batch, out);
 }
 
-// Ranges of parts write where all before them leave room, and then what they wrote moves together: little memory is
+// Each range writes where all before it leave room, and then what they wrote moves together: little memory is
 // touched that is not needed. Returns how many there are.
-std::size_t write_boxes(const Casters& casters, const std::vector<const Part*>& parts,
+std::size_t write_boxes(const Casters& casters, const std::vector<PartRange>& ranges,
                         const std::vector<std::size_t>& first, bool parallel) {
     struct Written {
         std::size_t begin = 0, end = 0;
     };
-    std::vector<Written> written(parts.size());
-    for_ranges(parallel, parts.size(), [&](std::size_t begin, std::size_t end) {
-        // Two ranges do not share a cache line.
+    std::vector<Written> written(ranges.size());
+    for_ranges(parallel, ranges.size(), [&](std::size_t begin, std::size_t end) {
+        // Two threads do not share a cache line.
         BoxWriter writer(casters.boxes.get(), (first[begin] + Casters::kLanes - 1) / Casters::kLanes * Casters::kLanes);
         for (std::size_t i = begin; i < end; ++i) {
             written[i].begin = writer.next();
-            bound_part(casters, *parts[i], writer);
+            bound_range(casters, ranges[i], writer);
             written[i].end = writer.next();
         }
     });
@@ -211,15 +217,19 @@ std::size_t write_boxes(const Casters& casters, const std::vector<const Part*>& 
 
 Casters make_casters(const WorldMotion& world, const Frame& frame, const LightView& view, bool parallel) {
     Casters casters{&world, &frame, view, nullptr, 0, {}, {}};
-    std::vector<const Part*> parts;
+    std::vector<PartRange> ranges;
     std::vector<std::size_t> first{0};  // where each one's boxes may begin
     for (std::size_t i = 0; i < world.parts.size(); ++i) {
         if (is_out_of_view(world.bounds[i], view)) continue;
-        parts.push_back(&world.parts[i]);
-        first.push_back(first.back() + most_boxes(world.parts[i]) + Casters::kLanes);
+        const Part& part = world.parts[i];
+        const std::uint32_t last = part.first_triangle + part.triangle_count;
+        for (std::uint32_t begin = part.first_triangle; begin < last; begin += kTrianglesAtOnce) {
+            ranges.push_back({&part, begin, std::min(last, begin + kTrianglesAtOnce)});
+            first.push_back(first.back() + ranges.back().most_boxes() + Casters::kLanes);
+        }
     }
     casters.boxes = std::make_unique_for_overwrite<Casters::Boxes[]>(first.back() / Casters::kLanes + 1);
-    casters.count = static_cast<std::uint32_t>(write_boxes(casters, parts, first, parallel));
+    casters.count = static_cast<std::uint32_t>(write_boxes(casters, ranges, first, parallel));
     const std::size_t used = (casters.count + Casters::kLanes - 1) / Casters::kLanes;
     if (casters.count % Casters::kLanes != 0) clear(casters.boxes[used - 1], casters.count % Casters::kLanes);
     casters.groups = groups_of(casters.boxes.get(), used);

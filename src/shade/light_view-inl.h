@@ -19,7 +19,7 @@ struct PlacedPoints {
 };
 
 // LightView::place() of points[at].
-HWY_INLINE PlacedPoints placed(F f, const LightView& view, const std::vector<glm::vec3>& points, hn::Vec<I> at) {
+HWY_INLINE PlacedPoints placed(F f, const LightView& view, std::span<const glm::vec3> points, hn::Vec<I> at) {
     const hn::Vec<I> first = hn::Add(hn::Add(at, at), at);
     Vec p[3];
     for (int axis = 0; axis < 3; ++axis)

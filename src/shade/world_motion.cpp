@@ -9,7 +9,7 @@
 namespace pentaprism {
 namespace {
 
-using Knots = std::vector<std::vector<glm::dvec3>>;  // [knot][vertex]
+using Knots = UninitializedVector<glm::dvec3>;  // knot after knot, each of all vertices
 
 // The scene at all knots of all parts; times are exact fractions, so equal times are equal numbers.
 class Poses {
@@ -37,23 +37,20 @@ int segments_of(const Frame& frame, const Part& part, int most) {
 
 Knots pose_knots(const Frame& frame, const Part& part, int segments, const Poses& poses) {
     const std::size_t n = part.vertex_count, of_primitive = n - part.cut_points.size();
-    Knots knots;
-    const auto pose = [&](const Pose& at) {
-        knots.emplace_back(n);
-        std::vector<glm::dvec3>& points = knots.back();
-        pose_positions(*frame.scene, at, part.placement, std::span(points).first(of_primitive));
+    Knots knots((segments + 1) * n);
+    for (int k = 0; k <= segments; ++k) {
+        const std::span<glm::dvec3> points = std::span(knots).subspan(k * n, n);
+        const Pose& pose = segments == 0 ? frame.middle : poses.at(static_cast<double>(k) / segments);
+        pose_positions(*frame.scene, pose, part.placement, points.first(of_primitive));
         for (std::size_t i = 0; i < part.cut_points.size(); ++i) {
             const auto [a, b, share] = part.cut_points[i];
             points[of_primitive + i] = points[a] + share * (points[b] - points[a]);
         }
-    };
-    if (segments == 0) {
-        pose(frame.middle);
-        return knots;
     }
-    for (int k = 0; k <= segments; ++k) pose(poses.at(static_cast<double>(k) / segments));
-    const bool still = std::all_of(knots.begin(), knots.end(), [&](const auto& knot) { return knot == knots[0]; });
-    if (still) knots.resize(1);
+    bool still = true;
+    for (int k = 1; still && k <= segments; ++k)
+        still = std::equal(knots.begin(), knots.begin() + n, knots.begin() + k * n);
+    if (still) knots.resize(n);
     return knots;
 }
 
@@ -81,10 +78,10 @@ WorldMotion world_motion(const Frame& frame, const glm::dvec3& origin, bool froz
     for (std::size_t i = 0; i < segments.size(); ++i) {
         Part& part = world.parts[i];
         part.first_point = static_cast<std::uint32_t>(points);
-        part.moves = knots[i].size() > 1;
-        part.segments = part.moves ? static_cast<int>(knots[i].size()) - 1 : 1;
+        part.moves = knots[i].size() > part.vertex_count;
+        part.segments = part.moves ? static_cast<int>(knots[i].size() / part.vertex_count) - 1 : 1;
         world.moves = world.moves || part.moves;
-        points += knots[i].size() * part.vertex_count;
+        points += knots[i].size();
     }
     world.points.resize(points);
     world.bounds.resize(world.parts.size());
@@ -92,12 +89,13 @@ WorldMotion world_motion(const Frame& frame, const glm::dvec3& origin, bool froz
     parallel_for(segments.size(), [&](std::size_t i) {
         const Part &part = world.parts[i], &was = frame.parts[i];
         glm::vec3* out = world.points.data() + part.first_point;
-        for (const auto& knot : knots[i])
-            for (const glm::dvec3& p : knot) {
-                *out = glm::vec3(p - origin);
-                world.bounds[i].low = glm::min(world.bounds[i].low, *out);
-                world.bounds[i].high = glm::max(world.bounds[i].high, *out++);
-            }
+        WorldMotion::Bounds bounds;
+        for (const glm::dvec3& p : knots[i]) {
+            *out = glm::vec3(p - origin);
+            bounds.low = glm::min(bounds.low, *out);
+            bounds.high = glm::max(bounds.high, *out++);
+        }
+        world.bounds[i] = bounds;
         const std::size_t first = 3 * std::size_t{part.first_triangle}, count = 3 * std::size_t{part.triangle_count};
         for (std::size_t c = first; c < first + count; ++c)
             world.corners[c] = frame.corners[c] - was.first_point + part.first_point;

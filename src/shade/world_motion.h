@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "base/uninitialized.h"
 #include "frame/frame.h"
 
 namespace pentaprism {
@@ -15,12 +16,12 @@ struct WorldMotion {
         glm::vec3 low{INFINITY}, high{-INFINITY};
     };
     std::vector<Part> parts;
-    std::vector<Bounds> bounds;     ///< of each part over the shutter
-    std::vector<glm::vec3> points;  ///< metres from the origin; of each vertex at each knot of its part
-    std::vector<std::uint32_t> corners;
+    std::vector<Bounds> bounds;             ///< of each part over the shutter
+    UninitializedVector<glm::vec3> points;  ///< metres from the origin; of each vertex at each knot of its part
+    UninitializedVector<std::uint32_t> corners;
     glm::dvec3 origin{0.0};
-    std::vector<std::uint32_t> part_of;  ///< of each triangle
-    bool moves = false;                  ///< any part
+    UninitializedVector<std::uint32_t> part_of;  ///< of each triangle
+    bool moves = false;                          ///< any part
 };
 
 /// Knots are the frame's; what stands still in the world has one. `frozen`: all of it as it is at mid-shutter.

@@ -60,7 +60,7 @@ TEST_F(Raytrace, DoesNotDependOnThreadsTilesOrTheBuild) {
     Frame frame = testing::make_random_frame(wanted, 5);
     // Each triangle twice more, under other numbers: each hit is a tie of three.
     Part& part = frame.parts[0];
-    const std::vector<std::uint32_t> corners = frame.corners;
+    const auto corners = frame.corners;
     for (int copy = 0; copy < 2; ++copy) frame.corners.insert(frame.corners.end(), corners.begin(), corners.end());
     part.triangle_count *= 3;
     frame.part_of.assign(part.triangle_count, 0);

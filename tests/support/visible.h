@@ -69,7 +69,7 @@ inline void set_mesh(Frame& frame, const std::vector<std::vector<glm::vec4>>& kn
                      const std::vector<std::uint32_t>& corners) {
     frame.points.clear();
     for (const auto& knot : knots) frame.points.insert(frame.points.end(), knot.begin(), knot.end());
-    frame.corners = corners;
+    frame.corners.assign(corners.begin(), corners.end());
     frame.part_of.assign(corners.size() / 3, 0);
     frame.parts[0].vertex_count = static_cast<std::uint32_t>(knots[0].size());
     frame.parts[0].triangle_count = static_cast<std::uint32_t>(corners.size() / 3);
