@@ -44,8 +44,8 @@ class Lensing {
         if (!head.camera.perspective) refuse("an orthographic camera's rays belong to its focus");
         if (!head.camera.thin_lens)
             refuse(
-                "the samples were rendered with --focus-range, --max-foreground-blur, --tilt or --swing: their rays "
-                "belong to that lens");
+                "the samples were rendered with --focus-range, --max-foreground-blur, --tilt or --swing, or while zoom "
+                "or focus moved: their rays belong to that lens");
         if (wanted.fstop) {
             if (!(info.fstop > 0.0 && *wanted.fstop >= info.fstop * (1.0 - kRounding)))
                 refuse(
