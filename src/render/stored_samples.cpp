@@ -47,6 +47,7 @@ class Lensing {
                 "the samples were rendered with --focus-range, --max-foreground-blur, --tilt or --swing, or while zoom "
                 "or focus moved: their rays belong to that lens");
         if (wanted.fstop) {
+            if (!std::isfinite(*wanted.fstop)) refuse(fmt::format("--fstop: {} is not a finite number", *wanted.fstop));
             if (!(info.fstop > 0.0 && *wanted.fstop >= info.fstop * (1.0 - kRounding)))
                 refuse(
                     fmt::format("--fstop {}: the samples were rendered at {}; a larger aperture has rays that they "
