@@ -236,6 +236,10 @@ glm::dmat4 world_to_scene_camera(const View& view, const Pose& pose) {
     glm::dmat4 rigid(1.0);
     const glm::dvec3 back = glm::normalize(glm::dvec3(world[2]));
     const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3(world[1]), back));
+    if (!std::isfinite(right.x + right.y + right.z))
+        throw Error(
+            ErrorKind::kScene,
+            fmt::format("the camera {} looks nowhere: its node or one above has a scale of 0", view.camera_name));
     rigid[0] = glm::dvec4(right, 0.0);
     rigid[1] = glm::dvec4(glm::cross(back, right), 0.0);
     rigid[2] = glm::dvec4(back, 0.0);
@@ -270,22 +274,22 @@ View make_view(const Scene& scene, const RenderSettings& settings, double frame)
     view.camera_node = find_camera_node(scene, settings.camera.camera);
     if (view.camera_node == kNone) {
         frame_scene(scene, animations, view);
+        view.sensor_width_mm = sensor_width_of(settings.camera, Camera{}, view);
         view.shutter = resolve_shutter(settings, LensInfo{}, frame);
         const Pose middle = evaluate(scene, animations, view.shutter.middle());
         resolve_lens(scene, settings.camera, LensInfo{}, middle, view);
         return view;
-        view.sensor_width_mm = sensor_width_of(settings.camera, Camera{}, view);
     }
     const Index index = scene.nodes[view.camera_node].camera;
     view.shutter = resolve_shutter(settings, scene.cameras[index].lens, frame);
     const Pose middle = evaluate(scene, animations, view.shutter.middle());
     const Camera& camera = camera_at(scene, middle, index);
     apply_projection(camera, view);
+    view.sensor_width_mm = sensor_width_of(settings.camera, scene.cameras[index], view);
     const std::string& node_name = scene.nodes[view.camera_node].name;
     view.camera_name = node_name.empty() ? camera.name : node_name;
     view.optics_move = moves_camera(scene, animations, index);
     if (view.optics_move) view.asked = settings.camera;
-    view.sensor_width_mm = sensor_width_of(settings.camera, scene.cameras[index], view);
     resolve_lens(scene, settings.camera, camera.lens, middle, view);
     return view;
 }
