@@ -126,3 +126,13 @@ TEST(SceneHash, IsThatOfTheBytesAndOfWhatTheFileRefersTo) {
 
 }  // namespace
 }  // namespace pentaprism
+
+    // As the reader takes them: a suffix of any case, a name with spaces.
+    for (const char* name : {"B.GLTF", "B.OBJ"}) {
+        put(name,
+            std::string(name) == "B.OBJ" ? "mtllib my library.mtl\n" : R"({"buffers":[{"uri":"my library.mtl"}]})");
+        put("my library.mtl", "newmtl red");
+        const std::string red = hash(name);
+        put("my library.mtl", "newmtl blue");
+        EXPECT_NE(hash(name), red) << name;
+    }
