@@ -98,6 +98,13 @@ void check_kind(const RenderCommand& command) {
     }
 }
 
+// Also of a file that does not exist yet.
+bool is_same_file(const fs::path& a, const fs::path& b) {
+    std::error_code error;
+    const auto whole = [&](const fs::path& file) { return fs::weakly_canonical(fs::absolute(file), error); };
+    return whole(a) == whole(b) && !error;
+}
+
 // A file for each frame, in a folder that can be written to.
 void check_names(const RenderCommand& command) {
     const auto check_numbered = [&](const fs::path& file, const char* option) {
@@ -114,6 +121,10 @@ void check_names(const RenderCommand& command) {
     }
     check_numbered(command.out, "--output");
     check_numbered(command.samples, "--samples");
+    const fs::path& file = command.samples.empty() ? command.out : command.samples;
+    if (!command.stats.empty() && !file.empty() &&
+        is_same_file(frame_file(command.stats, command.frames.front()), frame_file(file, command.frames.front())))
+        refuse(fmt::format("--stats {}: it is the file of the picture itself", command.stats.string()));
 }
 
 Json to_json(const RenderStats& stats, double cpu_ms, const RenderCommand& command, std::int64_t frame,
