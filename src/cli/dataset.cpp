@@ -275,7 +275,8 @@ std::vector<fs::path> Dataset::whole_frames() const {
     std::vector<fs::path> frames;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "frames"))
         if (entry.path().extension() == ".json" && number_of(entry.path()) >= 0) frames.push_back(entry.path());
-    std::sort(frames.begin(), frames.end());
+    std::sort(frames.begin(), frames.end(),
+              [](const fs::path& a, const fs::path& b) { return number_of(a) < number_of(b); });
     return frames;
 }
 
