@@ -310,7 +310,8 @@ void Dataset::write_summary(const std::vector<fs::path>& frames) const {
     }
     Json manifest;
     manifest["software"] = source_.software;
-    manifest["settings"] = Json::parse(settings_json(source_.settings, source_.scene, source_.scene_hash));
+    manifest["settings"] =
+        Json::parse(settings_json(source_.settings, source_.scene, source_.scene_hash, source_.pictures));
     if (source_.randomization) manifest["randomize"] = Json::parse(randomization_json(*source_.randomization));
     manifest["frames"] = frames.size();
     manifest["depth_png"] = "millimetres, 65535 for that and more, 0 where nothing is hit";

@@ -214,8 +214,9 @@ int render(RenderCommand& command) {
     print_info(fmt::format("{}: {} triangles, read in {:.0f} ms", scene.name, count_triangles(scene), load_ms));
     throw_if_interrupted();
 
-    const FrameSource source{command.settings, scene.name, scene_hash(command.scene), "pentaprism " PENTAPRISM_VERSION,
-                             command.randomization};
+    const FrameSource source{command.settings,          scene.name,
+                             scene_hash(command.scene), "pentaprism " PENTAPRISM_VERSION,
+                             command.randomization,     picture_hashes(command.settings)};
     const std::unique_ptr<FrameOutput> output = make_output(command, source);
     set_picture_threads(command.settings.method.threads == 1 ? 0 : 2);
 
