@@ -12,7 +12,15 @@ namespace pentaprism {
 /// itself for "builtin:NAME". A file that cannot be read counts as empty: reading the scene is what says so.
 std::string scene_hash(const std::string& source);
 
-/// One JSON object with everything that decides the pixels of `settings`, the scene's name and its hash.
-std::string settings_json(const RenderSettings& settings, const std::string& scene_name, const std::string& hash);
+/// Of the pictures that settings name: scene_hash() of each file; empty if there is none.
+struct PictureHashes {
+    std::string environment, aperture_image;
+};
+PictureHashes picture_hashes(const RenderSettings& settings);
+
+/// One JSON object with everything that decides the pixels of `settings`, the scene's name and its hash, and what
+/// picture_hashes() gives.
+std::string settings_json(const RenderSettings& settings, const std::string& scene_name, const std::string& hash,
+                          const PictureHashes& pictures = {});
 
 }  // namespace pentaprism

@@ -199,7 +199,7 @@ struct Scene {
     std::vector<Camera> cameras;
     std::vector<Light> lights;
     std::vector<Animation> animations;
-    std::optional<glm::vec3> background;  ///< what a built-in scene wants behind it; a file never sets this
+    std::optional<glm::vec3> background;  ///< behind it: of built-in scenes and what is written of them
     std::vector<std::string> warnings;    ///< one line each: what of the file is not shown as its author meant
 };
 

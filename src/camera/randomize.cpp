@@ -1,4 +1,5 @@
 #include <cmath>
+#include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -111,7 +112,8 @@ void read_key(const std::string& name, const Json& value, const std::string& fil
 
 Randomization read_randomization(const std::string& file) {
     std::ifstream stream(file);
-    if (!stream) refuse(fmt::format(" {}: cannot be read", file));
+    std::error_code ignored;
+    if (!stream || std::filesystem::is_directory(file, ignored)) refuse(fmt::format(" {}: cannot be read", file));
     const Json json = Json::parse(stream, nullptr, false);
     if (!json.is_object()) refuse(fmt::format(" {}: it is no JSON object", file));
     Randomization randomization;

@@ -119,20 +119,23 @@ double focus_distance(const Scene& scene, const CameraSettings& settings, const 
     return default_focus(scene, pose, view);
 }
 
-double sensor_width_of(const CameraSettings& settings, const LensInfo& info) {
-    return settings.sensor_width_mm.value_or(info.sensor_width_mm.value_or(36.0));
+// A camera that says its focal length alone has the sensor that goes with its field of view, as it is before it zooms.
+double sensor_width_of(const CameraSettings& settings, const Camera& camera, const View& view) {
+    if (settings.sensor_width_mm) return *settings.sensor_width_mm;
+    if (camera.lens.sensor_width_mm) return *camera.lens.sensor_width_mm;
+    if (!camera.perspective || !camera.lens.focal_length_mm) return 36.0;
+    return *camera.lens.focal_length_mm * 2.0 * std::tan(0.5 * camera.yfov) * view.width / view.height;
 }
 
 // Focal length and size of the lens.
 void resolve_size(const CameraSettings& settings, const LensInfo& info, View& view) {
     Lens& lens = view.lens;
-    const double sensor_width_mm = sensor_width_of(settings, info);
     if (!view.perspective && (settings.focal_length_mm || settings.sensor_width_mm))
         throw Error(ErrorKind::kUsage,
                     "an orthographic camera has neither focal length nor sensor: leave --focal-length and "
                     "--sensor-width out");
-    if (settings.focal_length_mm) view.fx = view.fy = *settings.focal_length_mm * view.width / sensor_width_mm;
-    view.focal_length_mm = view.perspective ? view.fx * sensor_width_mm / view.width : 0.0;
+    if (settings.focal_length_mm) view.fx = view.fy = *settings.focal_length_mm * view.width / view.sensor_width_mm;
+    view.focal_length_mm = view.perspective ? view.fx * view.sensor_width_mm / view.width : 0.0;
     if (!settings.defocus) return;
     if (settings.lens_radius) {
         lens.radius = *settings.lens_radius;
@@ -233,6 +236,10 @@ glm::dmat4 world_to_scene_camera(const View& view, const Pose& pose) {
     glm::dmat4 rigid(1.0);
     const glm::dvec3 back = glm::normalize(glm::dvec3(world[2]));
     const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3(world[1]), back));
+    if (!std::isfinite(right.x + right.y + right.z))
+        throw Error(
+            ErrorKind::kScene,
+            fmt::format("the camera {} looks nowhere: its node or one above has a scale of 0", view.camera_name));
     rigid[0] = glm::dvec4(right, 0.0);
     rigid[1] = glm::dvec4(glm::cross(back, right), 0.0);
     rigid[2] = glm::dvec4(back, 0.0);
@@ -267,6 +274,7 @@ View make_view(const Scene& scene, const RenderSettings& settings, double frame)
     view.camera_node = find_camera_node(scene, settings.camera.camera);
     if (view.camera_node == kNone) {
         frame_scene(scene, animations, view);
+        view.sensor_width_mm = sensor_width_of(settings.camera, Camera{}, view);
         view.shutter = resolve_shutter(settings, LensInfo{}, frame);
         const Pose middle = evaluate(scene, animations, view.shutter.middle());
         resolve_lens(scene, settings.camera, LensInfo{}, middle, view);
@@ -277,6 +285,7 @@ View make_view(const Scene& scene, const RenderSettings& settings, double frame)
     const Pose middle = evaluate(scene, animations, view.shutter.middle());
     const Camera& camera = camera_at(scene, middle, index);
     apply_projection(camera, view);
+    view.sensor_width_mm = sensor_width_of(settings.camera, scene.cameras[index], view);
     const std::string& node_name = scene.nodes[view.camera_node].name;
     view.camera_name = node_name.empty() ? camera.name : node_name;
     view.optics_move = moves_camera(scene, animations, index);

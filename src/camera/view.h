@@ -43,7 +43,7 @@ struct View {
     glm::dmat4 fixed_world_to_camera{1.0};  ///< used when camera_node is kNone
     std::optional<glm::dmat4> offset;       ///< from the scene's camera to that of CameraSettings::offset
     std::string camera_name;
-    double focal_length_mm = 0.0;
+    double focal_length_mm = 0.0, sensor_width_mm = 36.0;
     bool optics_move = false;  ///< zoom or focus are animated: see view_at()
     CameraSettings asked{};    ///< what they follow from, if they are
     /// Smallest w that counts as in front of the camera in screen bounds: depth_near, or 1/2 for w = 1 everywhere.

@@ -77,13 +77,13 @@ BenchPlan plan_of(const BenchCommand& command) {
     if (command.runs) plan.runs = static_cast<int>(*command.runs);
     if (command.tests) plan.most_tests = *command.tests;
     if (command.seconds) plan.seconds = *command.seconds;
+    plan.images = !command.folder.empty();
+    check_methods(plan.methods);
+    complete_settings(settings);
     if (command.embree) {
         plan.peer_threads = {1};
         if (settings.method.threads != 1) plan.peer_threads.push_back(settings.method.threads);
     }
-    plan.images = !command.folder.empty();
-    check_methods(plan.methods);
-    complete_settings(settings);
     return plan;
 }
 
@@ -166,7 +166,11 @@ void add_how(CLI::App& command, BenchCommand& bench) {
               [&](const std::string& text) { bench.runs = parse_whole("--runs", text, 1, 1000); });
     add_value(command, group, "--seconds", "S",
               "A slower method gets as many runs as fit in S seconds, at least one (default 4; --quick 0.05)",
-              [&](const std::string& text) { bench.seconds = parse_number("--seconds", text); });
+              [&](const std::string& text) {
+                  bench.seconds = parse_number("--seconds", text);
+                  if (!(*bench.seconds >= 0.0 && *bench.seconds <= 1e6))
+                      throw Error(ErrorKind::kUsage, fmt::format("--seconds: {} is not from 0 to 1e6", text));
+              });
     add_value(command, group, "--tests", "N",
               "Where the triangles' boxes hold over N samples, a part of the tiles is measured; 0: always all (default "
               "32000000; --quick 1000000)",

@@ -95,7 +95,11 @@ void add_compare(CLI::App& program, Run& run) {
     command->add_flag("--linear", state->options.linear,
                       "rmse, psnr and max of linear values (default: sRGB-encoded, cut to 0..1)");
     add_value(*command, "Options", "--fail-above", "X", "Exit with 1 if rmse is larger",
-              [state](const std::string& text) { state->fail_above = parse_number("--fail-above", text); });
+              [state](const std::string& text) {
+                  state->fail_above = parse_number("--fail-above", text);
+                  if (!(*state->fail_above >= 0.0))
+                      throw Error(ErrorKind::kUsage, fmt::format("--fail-above: {} is not a number from 0 up", text));
+              });
     add_value(*command, "Options", "-o,--output", "FILE", "Write the difference of encoded values, .png or .exr",
               [state](const std::string& text) { state->difference = text; });
     add_value(*command, "Options", "--gain", "G", "Differences in that picture are multiplied by it (default 4)",

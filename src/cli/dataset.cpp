@@ -275,7 +275,8 @@ std::vector<fs::path> Dataset::whole_frames() const {
     std::vector<fs::path> frames;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / "frames"))
         if (entry.path().extension() == ".json" && number_of(entry.path()) >= 0) frames.push_back(entry.path());
-    std::sort(frames.begin(), frames.end());
+    std::sort(frames.begin(), frames.end(),
+              [](const fs::path& a, const fs::path& b) { return number_of(a) < number_of(b); });
     return frames;
 }
 
@@ -309,7 +310,8 @@ void Dataset::write_summary(const std::vector<fs::path>& frames) const {
     }
     Json manifest;
     manifest["software"] = source_.software;
-    manifest["settings"] = Json::parse(settings_json(source_.settings, source_.scene, source_.scene_hash));
+    manifest["settings"] =
+        Json::parse(settings_json(source_.settings, source_.scene, source_.scene_hash, source_.pictures));
     if (source_.randomization) manifest["randomize"] = Json::parse(randomization_json(*source_.randomization));
     manifest["frames"] = frames.size();
     manifest["depth_png"] = "millimetres, 65535 for that and more, 0 where nothing is hit";

@@ -27,6 +27,10 @@ struct DevelopCommand {
 };
 
 int develop(const DevelopCommand& command) {
+    if (command.record.contains("rolling-shutter-duration") && command.development.rolling == RollingShutter::kNone)
+        throw Error(
+            ErrorKind::kUsage,
+            "--rolling-shutter-duration: nothing rolls; give --rolling-shutter top, bottom, left or right as well");
     check_picture_name(command.out, false);
     check_output_name(command.out, "--output");
     StoredSamples samples(open_shard_file(command.samples));

@@ -11,6 +11,7 @@
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/options.h"
+#include "cli/output_names.h"
 #include "cli/progress.h"
 #include "cli/values.h"
 
@@ -74,9 +75,17 @@ void write(const Picture& picture, const std::filesystem::path& file) {
 
 int experiment(ExperimentCommand& command) {
     complete_settings(command.plan.settings);
-    if (!command.out.empty() && !is_picture_name(command.out)) {
-        throw Error(ErrorKind::kUsage,
-                    fmt::format("--output {}: the name must end in .exr or .png", command.out.string()));
+    const ImageSettings& image = command.plan.settings.image;
+    for (const auto& [given, option] :
+         {std::pair(image.crop.has_value(), "--crop"), std::pair(image.target_error.has_value(), "--target-error")})
+        if (given)
+            throw Error(ErrorKind::kUsage,
+                        fmt::format("{}: the experiment has whole pictures, with as many samples for each pixel; leave "
+                                    "it out",
+                                    option));
+    if (!command.out.empty()) {
+        check_picture_name(command.out, false);
+        check_output_name(command.out, "--output");
     }
     const Scene scene = load_scene(command.scene);
     for (const std::string& warning : scene.warnings) print_warning(warning);
@@ -121,7 +130,8 @@ void add_experiment(CLI::App& program, Run& run) {
     add_value(*command, "Animation", "--frame", "N", "The frame (default 0)", [state](const std::string& text) {
         state->plan.frame = static_cast<double>(parse_whole("--frame", text, 0, 999'999'999));
     });
-    add_render_options(*command, state->plan.settings);
+    add_picture_options(*command, state->plan.settings);
+    add_threads_option(*command, state->plan.settings.method);
     add_verbosity_options(*command, state->verbosity);
     command->callback([state, &run] { run = [state] { return experiment(*state); }; });
 }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <pentaprism/image.h>
+#include <pentaprism/metadata.h>
 #include <pentaprism/randomize.h>
 #include <pentaprism/render.h>
 #include <pentaprism/shard.h>
@@ -20,6 +21,7 @@ struct FrameSource {
     RenderSettings settings;
     std::string scene, scene_hash, software;
     std::optional<Randomization> randomization;
+    PictureHashes pictures;
     /// The settings of a frame.
     RenderSettings at(std::int64_t frame) const;
     FileMetadata metadata(const RenderSettings& of) const;

@@ -8,6 +8,8 @@
 #include <new>
 #include <pentaprism/error.h>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
@@ -21,8 +23,20 @@ namespace {
 /// What the user should do next, after the library's own words on what is wrong with the command line.
 std::string usage_line(const CLI::App& program, const std::string& problem) {
     std::string command = "pentaprism";
-    for (const CLI::App* chosen : program.get_subcommands()) command += " " + chosen->get_name();
+    for (const CLI::App* at = &program; !at->get_subcommands().empty();) {
+        at = at->get_subcommands().front();
+        command += " " + at->get_name();
+    }
     return fmt::format("{}; see {} --help", problem, command);
+}
+
+/// What no command knows, also of commands within commands.
+std::vector<std::string> surplus_arguments(const CLI::App& program) {
+    std::vector<std::string> surplus;
+    for (const CLI::App* at = &program;; at = at->get_subcommands().front()) {
+        for (const std::string& argument : at->remaining()) surplus.push_back(argument);
+        if (at->get_subcommands().empty()) return surplus;
+    }
 }
 
 /// CLI11's words for the few mistakes that are common are not those of a sentence.
@@ -33,7 +47,7 @@ std::string problem_text(const CLI::App& program, const CLI::ParseError& error, 
     const std::string words = error.what();
     if (dynamic_cast<const CLI::ExtrasError*>(&error)) {
         std::string surplus;
-        for (const std::string& argument : program.get_subcommands().front()->remaining()) {
+        for (const std::string& argument : surplus_arguments(program)) {
             if (surplus.empty() || (argument[0] == '-' && surplus[0] != '-')) surplus = argument;
         }
         return fmt::format("{} '{}'", surplus[0] == '-' ? "there is no option" : "there is one argument too many,",

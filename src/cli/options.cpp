@@ -255,9 +255,7 @@ void add_method_options(CLI::App& command, MethodSettings& method) {
         method.seed =
             static_cast<std::uint32_t>(parse_whole("--seed", text, 0, std::numeric_limits<std::uint32_t>::max()));
     });
-    add_value(
-        command, group, "-t,--threads", "N", "Processors to use (default: PENTAPRISM_THREADS, else all)",
-        [&](const std::string& text) { method.threads = static_cast<int>(parse_whole("--threads", text, 1, 1024)); });
+    add_threads_option(command, method);
 }
 
 }  // namespace
@@ -310,12 +308,22 @@ void add_scene_argument(CLI::App& command, std::string& scene) {
         ->type_name("");
 }
 
-void add_render_options(CLI::App& command, RenderSettings& settings) {
+void add_threads_option(CLI::App& command, MethodSettings& method) {
+    add_value(
+        command, "Method", "-t,--threads", "N", "Processors to use (default: PENTAPRISM_THREADS, else all)",
+        [&](const std::string& text) { method.threads = static_cast<int>(parse_whole("--threads", text, 1, 1024)); });
+}
+
+void add_picture_options(CLI::App& command, RenderSettings& settings) {
     add_image_options(command, settings.image);
     add_camera_options(command, settings.camera);
     add_lens_options(command, settings.camera);
     add_shutter_options(command, settings.shutter);
     add_animation_options(command, settings.animation);
+}
+
+void add_render_options(CLI::App& command, RenderSettings& settings) {
+    add_picture_options(command, settings);
     add_method_options(command, settings.method);
 }
 

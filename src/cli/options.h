@@ -24,7 +24,10 @@ GlPipeline parse_gl_pipeline(const std::string& text);
 
 void add_scene_argument(CLI::App& command, std::string& scene);
 
-/// Groups image, camera, lens, shutter, animation and method. `settings` must outlive the parsing.
+/// Groups image, camera, lens, shutter and animation. `settings` must outlive the parsing.
+void add_picture_options(CLI::App& command, RenderSettings& settings);
+void add_threads_option(CLI::App& command, MethodSettings& method);
+/// All of them and the group method, in which threads are.
 void add_render_options(CLI::App& command, RenderSettings& settings);
 
 /// After parsing: fills in what the environment says, and throws Error(kUsage) for what has no meaning.

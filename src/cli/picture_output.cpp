@@ -81,7 +81,7 @@ RenderSettings FrameSource::at(std::int64_t frame) const {
 FileMetadata FrameSource::metadata(const RenderSettings& of) const {
     FileMetadata metadata;
     metadata.software = software;
-    metadata.settings_json = settings_json(of, scene, scene_hash);
+    metadata.settings_json = settings_json(of, scene, scene_hash, pictures);
     return metadata;
 }
 

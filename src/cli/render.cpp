@@ -98,6 +98,13 @@ void check_kind(const RenderCommand& command) {
     }
 }
 
+// Also of a file that does not exist yet.
+bool is_same_file(const fs::path& a, const fs::path& b) {
+    std::error_code error;
+    const auto whole = [&](const fs::path& file) { return fs::weakly_canonical(fs::absolute(file), error); };
+    return whole(a) == whole(b) && !error;
+}
+
 // A file for each frame, in a folder that can be written to.
 void check_names(const RenderCommand& command) {
     const auto check_numbered = [&](const fs::path& file, const char* option) {
@@ -114,6 +121,10 @@ void check_names(const RenderCommand& command) {
     }
     check_numbered(command.out, "--output");
     check_numbered(command.samples, "--samples");
+    const fs::path& file = command.samples.empty() ? command.out : command.samples;
+    if (!command.stats.empty() && !file.empty() &&
+        is_same_file(frame_file(command.stats, command.frames.front()), frame_file(file, command.frames.front())))
+        refuse(fmt::format("--stats {}: it is the file of the picture itself", command.stats.string()));
 }
 
 Json to_json(const RenderStats& stats, double cpu_ms, const RenderCommand& command, std::int64_t frame,
@@ -203,8 +214,9 @@ int render(RenderCommand& command) {
     print_info(fmt::format("{}: {} triangles, read in {:.0f} ms", scene.name, count_triangles(scene), load_ms));
     throw_if_interrupted();
 
-    const FrameSource source{command.settings, scene.name, scene_hash(command.scene), "pentaprism " PENTAPRISM_VERSION,
-                             command.randomization};
+    const FrameSource source{command.settings,          scene.name,
+                             scene_hash(command.scene), "pentaprism " PENTAPRISM_VERSION,
+                             command.randomization,     picture_hashes(command.settings)};
     const std::unique_ptr<FrameOutput> output = make_output(command, source);
     set_picture_threads(command.settings.method.threads == 1 ? 0 : 2);
 

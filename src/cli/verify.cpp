@@ -88,10 +88,18 @@ int judge(const VerifyReport& report) {
     return static_cast<int>(ErrorKind::kRender);
 }
 
+void refuse_unused(const RenderSettings& settings) {
+    const auto refuse = [](const char* why) { throw Error(ErrorKind::kUsage, why); };
+    if (settings.image.target_error)
+        refuse("--target-error: verify looks at --spp samples of each pixel; leave it out");
+    if (settings.image.crop) refuse("--crop: verify looks at whole pictures; leave it out");
+    if (settings.method.transparency == Transparency::kABuffer)
+        refuse("--transparency a-buffer: verify looks at the one surface that a sample shows; leave it out");
+}
+
 int verify(VerifyCommand& command) {
     complete_settings(command.settings);
-    if (command.settings.image.target_error)
-        throw Error(ErrorKind::kUsage, "--target-error: verify looks at --spp samples of each pixel; leave it out");
+    refuse_unused(command.settings);
     const Scene scene = load_scene(command.scene);
     for (const std::string& warning : scene.warnings) print_warning(warning);
     throw_if_interrupted();

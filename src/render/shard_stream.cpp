@@ -92,7 +92,12 @@ StreamHead head_of(const Shard& shard, const FrameInfo& info, const View& view, 
                    const FileMetadata& metadata) {
     const bool even = settings.shutter.curve.empty() && view.shutter.rolling == RollingShutter::kNone;
     const Lens& lens = view.lens;
-    const bool thin = lens.straight() && lens.tilt == glm::dvec2(0.0);
+    const bool rests = std::all_of(info.knots.begin(), info.knots.end(), [&](const FrameInfo::Knot& knot) {
+        const FrameInfo::Knot& first = info.knots.front();
+        return knot.fx == first.fx && knot.lens_radius == first.lens_radius &&
+               knot.focus_distance == first.focus_distance;
+    });
+    const bool thin = lens.straight() && lens.tilt == glm::dvec2(0.0) && rests;
     const bool round = lens.blades == 0 && !lens.image && lens.cats_eye == 0.0;
     return {shard, info, settings.image, metadata, {view.perspective, lens.ratio, thin, round, even}};
 }

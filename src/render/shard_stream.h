@@ -22,7 +22,7 @@ struct StreamHead {
     struct Camera {
         bool perspective = true;
         double lens_ratio = 1.0;
-        bool thin_lens = true;     ///< no artist's blur, no plane of focus that leans
+        bool thin_lens = true;     ///< at rest; no artist's blur, no plane of focus that leans
         bool round = true;         ///< the aperture is a disk, everywhere in the picture
         bool even_shutter = true;  ///< neither curve nor rolling
     } camera;

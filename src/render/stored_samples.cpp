@@ -44,9 +44,10 @@ class Lensing {
         if (!head.camera.perspective) refuse("an orthographic camera's rays belong to its focus");
         if (!head.camera.thin_lens)
             refuse(
-                "the samples were rendered with --focus-range, --max-foreground-blur, --tilt or --swing: their rays "
-                "belong to that lens");
+                "the samples were rendered with --focus-range, --max-foreground-blur, --tilt or --swing, or while zoom "
+                "or focus moved: their rays belong to that lens");
         if (wanted.fstop) {
+            if (!std::isfinite(*wanted.fstop)) refuse(fmt::format("--fstop: {} is not a finite number", *wanted.fstop));
             if (!(info.fstop > 0.0 && *wanted.fstop >= info.fstop * (1.0 - kRounding)))
                 refuse(
                     fmt::format("--fstop {}: the samples were rendered at {}; a larger aperture has rays that they "

@@ -83,8 +83,13 @@ void read_lens(Document& document, const Object& owner, LensInfo& lens) {
     keep_first(lens.swing_deg, number("swing", -89.0, 89.0));
     keep_first(lens.cats_eye, number("catsEye", 0.0, 1.5));
     keep_first(lens.focus_range, usable_range(document, owner, *found, "focusRange"));
-    if (const auto blades = number("apertureBlades", 0.0); blades && !lens.aperture_blades && *blades <= 1000.0) {
-        lens.aperture_blades = static_cast<int>(*blades);
+    // 0 is a disk; of one or two blades, or of parts of one, there is no iris.
+    if (const auto blades = number("apertureBlades", 0.0, 64.0); blades && !lens.aperture_blades) {
+        if (*blades == std::floor(*blades) && *blades != 1.0 && *blades != 2.0)
+            lens.aperture_blades = static_cast<int>(*blades);
+        else
+            document.warn(
+                fmt::format("{}, extras, has an apertureBlades that is not usable; it is ignored", owner.where()));
     }
 }
 

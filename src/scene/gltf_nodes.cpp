@@ -177,6 +177,21 @@ void check_skinned_nodes(Document& document, Scene& scene) {
     }
 }
 
+/// `extras` of a scene: what a built-in one has behind it.
+void read_background(Document& document, const Object& object, Scene& scene) {
+    const auto extras = object.json().find("extras");
+    if (extras == object.json().end() || !extras->is_object() || !extras->contains("background")) return;
+    const Json& color = (*extras)["background"];
+    const bool usable =
+        color.is_array() && color.size() == 3 && std::all_of(color.begin(), color.end(), [](const Json& value) {
+            return value.is_number() && value.get<double>() >= 0.0 && value.get<double>() <= 65504.0;
+        });
+    if (usable)
+        scene.background = glm::vec3(color[0].get<float>(), color[1].get<float>(), color[2].get<float>());
+    else
+        document.warn(object.where() + ", extras, has a background that is not usable; it is ignored");
+}
+
 }  // namespace
 
 void read_nodes(Document& document, Scene& scene) {
@@ -205,8 +220,9 @@ void read_roots(Document& document, Scene& scene) {
         document.item("scenes", "scene", i).indices("nodes", "nodes");
     const Index chosen = document.root().index("scene", "scenes");
     if (document.count("scenes") > 0) {
-        scene.roots =
-            document.item("scenes", "scene", static_cast<std::size_t>(std::max(chosen, 0))).indices("nodes", "nodes");
+        const Object shown = document.item("scenes", "scene", static_cast<std::size_t>(std::max(chosen, 0)));
+        scene.roots = shown.indices("nodes", "nodes");
+        read_background(document, shown, scene);
     } else {
         for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
             if (scene.nodes[i].parent == kNone) scene.roots.push_back(static_cast<Index>(i));

@@ -470,6 +470,8 @@ std::string Writer::document() {
     root_["asset"] = {{"version", "2.0"}, {"generator", "pentaprism"}};
     root_["scene"] = 0;
     root_["scenes"].push_back({{"name", scene_.name}, {"nodes", scene_.roots}});
+    if (const auto& color = scene_.background)  // glTF itself has none
+        root_["scenes"][0]["extras"] = {{"background", {color->r, color->g, color->b}}};
     nodes();
     cameras();
     meshes();

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <tiny_obj_loader.h>
 
 #include "scene/image_decode.h"
@@ -148,6 +149,22 @@ Material read_material(const tinyobj::material_t& source, TextureFiles& files, S
 }
 
 }  // namespace
+
+std::vector<fs::path> mtl_files(const std::string& line, const fs::path& folder) {
+    constexpr const char* kSpace = " \t\r";
+    std::istringstream words(line);
+    std::string word;
+    if (!(words >> word) || word != "mtllib" || !(words >> std::ws)) return {};
+    std::string names;
+    std::getline(words, names);
+    names.erase(names.find_last_not_of(kSpace) + 1);
+    std::error_code ignored;
+    if (fs::is_regular_file(folder / names, ignored) || names.find_first_of(kSpace) == std::string::npos)
+        return {folder / names};
+    std::vector<fs::path> files;
+    for (words = std::istringstream(names); words >> word;) files.push_back(folder / word);
+    return files;
+}
 
 void read_mtl(const fs::path& file, Scene& scene, MaterialNames& names) {
     std::error_code ignored;

@@ -128,24 +128,16 @@ tinyobj::callback_t callbacks() {
     return callback;
 }
 
-/// Libraries are read first: their lines may hold names with spaces, whole or apart.
+/// Libraries are read first: their materials are known when a face asks for one.
 void read_libraries(const std::string& text, const fs::path& folder, File& file) {
     std::istringstream lines(text);
-    std::vector<std::string> seen;
-    for (std::string line; std::getline(lines, line);) {
-        line = trimmed(line);
-        if (!line.starts_with("mtllib") || line.size() < 8 || (line[6] != ' ' && line[6] != '\t')) continue;
-        const std::string names = trimmed(line.substr(7));
-        if (std::find(seen.begin(), seen.end(), names) != seen.end()) continue;
-        seen.push_back(names);
-        std::error_code ignored;
-        if (fs::is_regular_file(folder / names, ignored) || names.find(' ') == std::string::npos) {
-            read_mtl(folder / names, file.scene, file.materials);
-            continue;
+    std::vector<fs::path> seen;
+    for (std::string line; std::getline(lines, line);)
+        for (const fs::path& library : mtl_files(line, folder)) {
+            if (std::find(seen.begin(), seen.end(), library) != seen.end()) continue;
+            seen.push_back(library);
+            read_mtl(library, file.scene, file.materials);
         }
-        std::istringstream words(names);
-        for (std::string name; words >> name;) read_mtl(folder / name, file.scene, file.materials);
-    }
 }
 
 /// Many files number texture coordinates or normals that they do not hold at all: then there are none.

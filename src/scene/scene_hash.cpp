@@ -1,16 +1,22 @@
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <pentaprism/metadata.h>
-#include <sstream>
 #include <vector>
 
 #include "base/hash.h"
+#include "scene/mtl_reader.h"
 
 namespace pentaprism {
 namespace {
 
 namespace fs = std::filesystem;
+
+std::string lower_case(std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
 
 std::string percent_decoded(const std::string& uri) {
     std::string text;
@@ -46,12 +52,8 @@ std::vector<fs::path> gltf_companions(const fs::path& file) {
 std::vector<fs::path> obj_companions(const fs::path& file) {
     std::vector<fs::path> files;
     std::ifstream stream(file);
-    for (std::string line; std::getline(stream, line);) {
-        std::istringstream words(line);
-        std::string word;
-        if (!(words >> word) || word != "mtllib") continue;
-        while (words >> word) files.push_back(file.parent_path() / word);
-    }
+    for (std::string line; std::getline(stream, line);)
+        for (const fs::path& library : mtl_files(line, file.parent_path())) files.push_back(library);
     return files;
 }
 
@@ -66,8 +68,9 @@ std::string scene_hash(const std::string& source) {
     const fs::path file(source);
     hash.add_file(file);
     std::vector<fs::path> companions;
-    if (file.extension() == ".gltf") companions = gltf_companions(file);
-    if (file.extension() == ".obj") companions = obj_companions(file);
+    const std::string suffix = lower_case(file.extension().string());
+    if (suffix == ".gltf") companions = gltf_companions(file);
+    if (suffix == ".obj") companions = obj_companions(file);
     for (const fs::path& companion : companions) hash.add_file(companion);
     return hash.hex();
 }

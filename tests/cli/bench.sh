@@ -21,6 +21,7 @@ check "threads are those asked for" json out 'd["machine"]["threads"] == 1'
 refuses 2 "--methods: 'nope' is not one of auto, " bench builtin:cubes --methods none,nope
 refuses 2 "no effect 'blurry'; there are: still, motion, " bench builtin:cubes --effects blurry
 refuses 2 "--effects: 'still,' has an empty name" bench builtin:cubes --effects still,
+for wrong in nan -1 inf; do refuses 2 "--seconds: $wrong is not from 0" bench builtin:cubes --seconds $wrong; done
 refuses 2 "--peer: 'optix' is not one of embree" bench builtin:cubes --peer optix
 refuses 2 "--spp" bench builtin:cubes --spp 0
 refuses 3 "nope.glb" bench nope.glb --quick
@@ -47,6 +48,8 @@ if [[ $status == 0 ]]; then
     check "the ray tracer is timed with one thread and with all" json out '[p["threads"] for p in d["peers"]] == [1, 2]'
     check "its keys are there" json out 'all(set("scene effect threads peer build_ms trace_ms ours_ms ratio".split()) <= set(p) for p in d["peers"])'
     check "ratio is its time over ours" json out 'all(abs(p["ratio"] - (p["build_ms"] + p["trace_ms"]) / p["ours_ms"]) < 1e-9 for p in d["peers"])'
+    PENTAPRISM_THREADS=1 run bench builtin:cubes "${small[@]}" --effects still --methods auto --peer embree --json -q
+    check "one thread is measured once, also if the environment says so" json out '[p["threads"] for p in d["peers"]] == [1]'
 elif [[ $status != 5 ]]; then
     fail "bench --peer embree: exit code $status: $(cat err)"
 fi

@@ -19,7 +19,7 @@ check "it says by how much" grep -qE '^pentaprism: error: .*rmse is 0\.[0-9]+, a
 refuses 2 "differ in size: 64x36 and 32x36" compare a.exr small.exr
 refuses 3 "nothing.exr" compare a.exr nothing.exr
 refuses 2 "the name must end in" compare a.exr a.exr -o difference.txt
-refuses 2 "--fail-above" compare a.exr a.exr --fail-above much
+for wrong in much nan -1; do refuses 2 "--fail-above" compare a.exr a.exr --fail-above $wrong; done
 refuses 2 "B" compare a.exr
 refuses 4 "no/folder" compare a.exr b.png -o no/folder.png
 finish

@@ -95,6 +95,10 @@ succeeds render builtin:cubes --dataset set -f 3-5 "${small[@]}" --skip-existing
 check "whole frames are left alone" test "$before" = "$(cksum set/blur/0003.exr)"
 check "missing ones are made" json set/manifest.json 'd["frames"] == 3'
 
+# Frames are listed by their number, also where it outgrows its four digits.
+succeeds render builtin:cubes --dataset long -f 9999-10001 -r 8x8 -s 1
+check "camera.json lists frames in order" json long/camera.json '[f["frame"] for f in d["frames"]] == [9999, 10000, 10001]'
+
 # Shards into one folder: each reads its own frames alone, and the last one to end sums up.
 part() { local i=$1; shift; run render builtin:cubes --dataset parts -f 1-6 "${small[@]}" --shard "$i/3" "$@"; }
 succeeds render builtin:cubes --dataset whole -f 1-6 "${small[@]}"

@@ -18,6 +18,8 @@ succeeds scene cubes -o cubes.glb
 check "stdout stays empty" test ! -s out
 succeeds scene builtin:cubes -o again.glb
 check "the same scene gives the same bytes" cmp -s cubes.glb again.glb
+for scene in builtin:cubes cubes.glb; do succeeds render $scene -o "${scene/:/-}.png" -r 64x36 -s 1 --frame 24; done
+check "a written scene is the same picture" "$PENTAPRISM" compare builtin-cubes.png cubes.glb.png --fail-above 0.0001
 succeeds info cubes.glb --json
 check "a written scene can be read" json out 'd["triangles"] == 50 and d["scene"] == "cubes.glb" and len(d["scene_hash"]) == 32'
 check "all keys are there" json out \

@@ -53,6 +53,7 @@ assert a["worldToCamera"] == b["worldToCamera"]
 PY
 
 refuses 2 '--randomize none.json: cannot be read' render builtin:cubes -o a.exr "${small[@]}" --randomize none.json
+refuses 2 '--randomize .: cannot be read' render builtin:cubes -o a.exr "${small[@]}" --randomize .
 refuses 2 '--randomize: fstop has a range, and --fstop is given' render builtin:cubes -o a.exr "${small[@]}" --fstop 2 --randomize lens.json
 refuses 2 '--randomize: shutter has a range, and --shutter-position' render builtin:cubes -o a.exr "${small[@]}" \
     --shutter-position start --randomize lens.json

@@ -39,6 +39,8 @@ refuses 2 '--focus-distance: 0 is not above 0' refocus a.5ds -o bad.exr --focus-
 refuses 2 "--focus-distance: 'near' is not a number" refocus a.5ds -o bad.exr --focus-distance near
 refuses 2 '--shutter: 0.6 frames' retime a.5ds -o bad.exr --shutter 0.6
 refuses 2 '--shutter-curve: times rise' retime a.5ds -o bad.exr --shutter 0.2 --shutter-curve trapezoid:0.8,0.2
+refuses 2 '--rolling-shutter-duration: nothing rolls' retime a.5ds -o bad.exr --rolling-shutter-duration 0.1
+refuses 2 '--fstop: inf is not a finite number' refocus a.5ds -o bad.exr --fstop inf
 refuses 2 'must end in .exr or .png' refocus a.5ds -o bad.tif
 refuses 2 '--output is required' refocus a.5ds
 refuses 2 'SAMPLES is required' retime -o bad.exr

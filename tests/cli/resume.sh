@@ -60,6 +60,21 @@ succeeds render builtin:cubes -o a.png "${small[@]}" --resume
 refuses 2 'a.png: .*seed' render builtin:cubes -o a.png "${small[@]}" --seed 2 --resume
 check "settings that change no pixel are none" "$PENTAPRISM" render builtin:cubes -o a.png "${small[@]}" -t 1 --resume -q
 
+# Pictures that decide pixels count by what is in them, not by their names alone.
+mkdir day night
+succeeds render builtin:cubes -o day/sky.exr -r 32x16 -s 1
+succeeds render builtin:cubes -o night/sky.exr -r 32x16 -s 1 --exposure -4
+for option in --background --aperture-image; do
+    key=environment
+    [[ $option == --background ]] || key=aperture_image
+    succeeds render builtin:cubes -o lit.png "${small[@]}" "$option" day/sky.exr
+    check "$option: the same picture elsewhere" "$PENTAPRISM" render builtin:cubes -o lit.png "${small[@]}" "$option" ./day/sky.exr --resume -q
+    refuses 2 "lit.png: .*${key}_hash is .* there and .* now" render builtin:cubes -o lit.png "${small[@]}" "$option" night/sky.exr --resume
+done
+succeeds render builtin:cubes -o lit.exr "${small[@]}" --background day/sky.exr --shard 1/2
+succeeds render builtin:cubes -o lit.exr "${small[@]}" --background night/sky.exr --shard 2/2
+refuses 2 'no parts of one picture' merge lit.exr.1-of-2.shard lit.exr.2-of-2.shard -o lit.exr
+
 # A disk that fills up in the middle: a clear error, whole frames alone, and with more room the rest.
 mkdir disk
 if mount -t tmpfs -o size=64k tmpfs disk 2>/dev/null; then

@@ -123,6 +123,10 @@ refuses 2 '--gain: nan is not a finite number above 0' compare a.exr b.exr -o c.
 refuses 2 '--gain: -1 is not a finite number above 0' compare a.exr b.exr -o c.exr --gain -1
 refuses 2 '--resolution' verify builtin:cubes --resolution 0x0
 refuses 2 '--target-error: verify looks at --spp' verify builtin:cubes --target-error 0.1
+refuses 2 '--stats a.exr: it is the file of the picture itself' render builtin:cubes -o a.exr --stats a.exr
+refuses 2 '--stats ./a.#.exr: it is the file of the picture itself' render builtin:cubes -o 'a.#.exr' --stats './a.#.exr' -f 1-2
+refuses 2 '--crop: verify looks at whole pictures' verify builtin:cubes --crop 0,8,0,8
+refuses 2 '--transparency a-buffer: verify looks at the one surface' verify builtin:cubes --transparency a-buffer
 refuses 2 '--time' verify builtin:cubes --time 0
 
 PENTAPRISM_THREADS=lots refuses 2 "PENTAPRISM_THREADS: 'lots'" render builtin:cubes -o a.exr

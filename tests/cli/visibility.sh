@@ -41,5 +41,10 @@ succeeds experiment guided-sampling builtin:cubes -r 32x18 -s 32 --repeats 4 --f
 check "the experiment finds the biased estimator" json out '{r["name"]: r for r in d["rows"]}["private"]["rms_z"] > 2 and len(d["rows"]) == 5'
 check "and draws it" [ -s guided.png ]
 refuses 2 '--spp: this experiment takes 32' experiment guided-sampling builtin:cubes -s 16
+refuses 2 '--crop: the experiment has whole pictures' experiment guided-sampling builtin:cubes --crop 0,8,0,8
+refuses 2 '--target-error: the experiment has' experiment guided-sampling builtin:cubes --target-error 0.1
+refuses 2 "there is no option '--visibility'; see pentaprism experiment guided-sampling --help" \
+    experiment guided-sampling builtin:cubes --visibility accumulation
+refuses 4 'no/folder' experiment guided-sampling builtin:cubes -o no/folder/a.png
 refuses 2 '--output a.jpg: the name must end in' experiment guided-sampling builtin:cubes -o a.jpg
 finish

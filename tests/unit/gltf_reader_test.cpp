@@ -271,6 +271,27 @@ TEST_F(GltfReader, PassesOverALensInExtrasThatIsNone) {
     for (const char* key : {"focusRange", "tilt", "catsEye"}) EXPECT_TRUE(mentions(scene.warnings, key)) << key;
 }
 
+TEST_F(GltfReader, ABackgroundIsThreeColoursOfLight) {
+    for (const auto& wrong : {json("blue"), json{1, 2}, json{1, -2, 3}, json{1, 2, "x"}, json{1, 2, 1e9}}) {
+        file.json["scenes"] = json::array({{{"extras", {{"background", wrong}}}}});
+        const Scene scene = load();
+        EXPECT_FALSE(scene.background.has_value()) << wrong;
+        EXPECT_TRUE(mentions(scene.warnings, "background")) << wrong;
+    }
+}
+
+TEST_F(GltfReader, AnIrisHasThreeBladesOrNone) {
+    for (const auto& [blades, wanted] : std::initializer_list<std::pair<double, int>>{
+             {0, 0}, {3, 3}, {64, 64}, {1, -1}, {2, -1}, {65, -1}, {6.5, -1}}) {
+        file.json["cameras"] = json::array({{{"type", "perspective"},
+                                             {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}},
+                                             {"extras", {{"apertureBlades", blades}}}}});
+        const Scene scene = load();
+        EXPECT_EQ(scene.cameras[0].lens.aperture_blades.value_or(-1), wanted) << blades;
+        EXPECT_EQ(mentions(scene.warnings, "apertureBlades"), wanted < 0) << blades;
+    }
+}
+
 TEST_F(GltfReader, PointersMoveNodesAndCameras) {
     file.json["cameras"] = json::array({{{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}}});
     file.node({{"camera", 0}});

@@ -326,6 +326,13 @@ TEST_F(GltfWriter, KeepsCamerasWithLensAndShutter) {
     }
 }
 
+TEST_F(GltfWriter, KeepsTheBackground) {
+    Scene scene = one_of_everything();
+    EXPECT_EQ(written_and_read(scene).background, scene.background);
+    scene.background = glm::vec3(0.25f, 0.5f, 2.0f);
+    EXPECT_EQ(written_and_read(scene).background, scene.background);
+}
+
 TEST_F(GltfWriter, KeepsLights) {
     const Scene scene = one_of_everything(), read = written_and_read(scene);
     ASSERT_EQ(read.lights.size(), 3u);

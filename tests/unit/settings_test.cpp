@@ -90,6 +90,17 @@ TEST(Settings, JsonHoldsWhatDecidesPixelsAndNothingElse) {
     EXPECT_EQ(json["scene_hash"], "abc");
     EXPECT_FALSE(json.contains("focus_distance")) << "what was not given is left out";
 
+    settings.method.culling = "hull+clip-space-as-printed";
+    EXPECT_NE(settings_json(settings, "a.glb", "abc"), text) << "it loses samples";
+    settings.method.culling = "auto";
+    settings.method.shading = "pixel";
+    const std::string on_cpu = settings_json(settings, "a.glb", "abc");
+    settings.method.backend = Backend::kGl;
+    EXPECT_NE(settings_json(settings, "a.glb", "abc"), on_cpu) << "it shades, and rounds otherwise";
+    settings.method.shading = "decoupled";
+    EXPECT_EQ(settings_json(settings, "a.glb", "abc"), text);
+    settings.method.backend = Backend::kCpu;
+
     settings.method.threads = 3;
     settings.method.tile_size = 8;
     settings.method.culling = "none";
@@ -120,6 +131,16 @@ TEST(SceneHash, IsThatOfTheBytesAndOfWhatTheFileRefersTo) {
     const std::string without = hash("a.obj");
     put("m.mtl", "newmtl red");
     EXPECT_NE(hash("a.obj"), without);
+
+    // As the reader takes them: a suffix of any case, a name with spaces.
+    for (const char* name : {"B.GLTF", "B.OBJ"}) {
+        put(name,
+            std::string(name) == "B.OBJ" ? "mtllib my library.mtl\n" : R"({"buffers":[{"uri":"my library.mtl"}]})");
+        put("my library.mtl", "newmtl red");
+        const std::string red = hash(name);
+        put("my library.mtl", "newmtl blue");
+        EXPECT_NE(hash(name), red) << name;
+    }
     EXPECT_NE(scene_hash("builtin:cubes"), scene_hash("builtin:hand"));
     fs::remove_all(folder);
 }

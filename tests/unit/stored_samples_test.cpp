@@ -79,8 +79,7 @@ RenderSettings settings_focused_at(double distance, int spp = 16, std::uint32_t 
 
 constexpr double kFrame = 5.0;  // the mover is in the middle
 
-Bytes samples_of(const RenderSettings& settings) {
-    const Scene scene = scene_of_two();
+Bytes samples_of(const RenderSettings& settings, const Scene& scene = scene_of_two()) {
     MemorySink sink;
     RenderStats stats;
     Renderer(scene).render_samples(settings, kFrame, {}, sink, stats);
@@ -406,6 +405,29 @@ TEST(StoredSamples, TheMeanOfTheSharpSlicesIsTheBlurredPicture) {
         for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += sharp.rgba[i] / 16.0;
     }
     for (std::size_t i = 0; i < mean.size(); ++i) ASSERT_NEAR(mean[i], blurred.rgba[i], 2e-6) << i;
+}
+
+TEST(StoredSamples, RefuseAnotherFocusWhereZoomOrFocusMoved) {
+    const auto with = [](ChannelPath path, float from, float to) {
+        Scene scene = scene_of_two();
+        Channel channel;
+        channel.camera = 0;
+        channel.path = path;
+        channel.width = 1;
+        channel.times = {0.0f, 1.0f};
+        channel.values = {from, to};
+        scene.animations.push_back({"optics", {channel}, 1.0});
+        return scene;
+    };
+    RenderSettings settings = settings_focused_at(4.0, 1);
+    Development wanted;
+    wanted.focus_distance = 3.0;
+    EXPECT_THROW(developed(samples_of(settings, with(ChannelPath::kYfov, 1.5f, 0.5f)), wanted), Error);
+    const Scene pulls = with(ChannelPath::kFocusDistance, 2.0f, 8.0f);
+    EXPECT_NO_THROW(developed(samples_of(settings, pulls), wanted)) << "the settings hold the focus still";
+    settings.camera.focus_distance.reset();
+    EXPECT_THROW(developed(samples_of(settings, pulls), wanted), Error);
+    EXPECT_NO_THROW(developed(samples_of(settings, pulls), {})) << "as it was rendered";
 }
 
 TEST(StoredSamples, RefuseWhatTheyDoNotHold) {

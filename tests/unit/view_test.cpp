@@ -52,6 +52,39 @@ TEST(View, TakesTheFocalLengthInPixelsFromTheFieldOfViewOrTheSensor) {
     EXPECT_NEAR(make_view(scene, settings, 0).fx, 50.0 * 300 / 24, 1e-9);
 }
 
+TEST(View, AFocalLengthInTheFileSaysHowWideTheSensorIs) {
+    Scene scene;
+    Camera camera = right_angle();
+    camera.lens.focal_length_mm = 50;
+    camera.lens.fstop = 2;
+    camera.lens.focus_distance = 4;
+    add_camera(scene, "eye", {}, camera);
+    RenderSettings settings = picture(300, 200);
+    const View view = make_view(scene, settings, 0);
+    EXPECT_NEAR(view.fx, 100, 1e-9) << "the field of view is the camera's";
+    EXPECT_NEAR(view.focal_length_mm, 50, 1e-9);
+    EXPECT_NEAR(view.lens.radius, 0.0125, 1e-12) << "50 mm / (2 * 2)";
+    EXPECT_NEAR(make_view(scene, picture(200, 200), 0).lens.radius, 0.0125, 1e-12) << "whatever the picture's shape";
+    settings.camera.focal_length_mm = 100;
+    EXPECT_NEAR(make_view(scene, settings, 0).fx, 200, 1e-9) << "twice as long, twice as large";
+    settings.camera.focal_length_mm.reset();
+    settings.camera.sensor_width_mm = 36;
+    EXPECT_NEAR(make_view(scene, settings, 0).focal_length_mm, 12, 1e-9) << "the command line counts more";
+    settings.camera.sensor_width_mm.reset();
+    scene.cameras[0].lens.sensor_width_mm = 36;
+    EXPECT_NEAR(make_view(scene, settings, 0).focal_length_mm, 12, 1e-9) << "and so does the sensor itself";
+}
+
+TEST(View, ACameraOfNoSizeLooksNowhere) {
+    Scene scene;
+    add_camera(scene, "eye", {}, right_angle());
+    scene.nodes[0].transform.scale = {2, 0.5, 3};
+    EXPECT_NO_THROW(make_view(scene, picture(30, 20), 0)) << "a camera has no scale";
+    scene.nodes[0].transform.scale = {1, 0, 1};
+    const View view = make_view(scene, picture(30, 20), 0);
+    EXPECT_THROW(world_to_camera(view, evaluate(scene, {}, 0)), Error);
+}
+
 TEST(View, TakesTheLensRadiusFromTheFStop) {
     Scene scene;
     add_camera(scene, "eye", {}, right_angle());
