@@ -22,13 +22,10 @@ inline bool crosses_segments(const Part& part, float vector_span) {
            static_cast<float>(part.segments) * vector_span > 1.5f;
 }
 
-/// The same, but some stay together, in the order of the list:
-/// - segments of a triangle that follow each other, where vectors cross them;
-/// - in crowded tiles sixteen triangles that follow each other in the list, blur over nearly the same pixels of the
-/// tile
-///   and lie about as deep: neighbours in a fine mesh. `clusters`: where in `entries` these begin, ascending.
-/// `nearest`: of each entry, no sample sees it, nor one that it stays together with, nor any later one, at a smaller
-/// depth.
+/// The same, but some that follow each other in the list stay together: segments of a triangle, where vectors cross
+/// them, and in crowded tiles sixteen triangles that blur over nearly the same pixels of the tile and lie about as
+/// deep, neighbours in a fine mesh. `clusters`: where in `entries` the latter begin, ascending. `nearest`: of each
+/// entry; no sample sees it, nor what it stays together with, nor any later entry, at a smaller depth.
 struct ClusteredOrder {
     std::vector<std::uint32_t> entries, clusters;
     std::vector<float> nearest;
