@@ -81,11 +81,12 @@ constexpr std::size_t kAtOnce = 1 << 14;  // points or triangles that one thread
 // Copies part `number` to its place in the frame.
 void put_part(const PosedPart& posed, std::uint32_t number, Frame& frame) {
     const Part& part = frame.parts[number];
-    const auto& [points, depths] = posed.knots;
-    parallel_ranges(points.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
+    const KnotVertices& knots = posed.knots;
+    parallel_ranges(knots.points.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
         const std::size_t to = part.first_point + begin;
-        std::copy(points.begin() + begin, points.begin() + end, frame.points.begin() + to);
-        if (!depths.empty()) std::copy(depths.begin() + begin, depths.begin() + end, frame.depths.begin() + to);
+        std::copy(knots.points.begin() + begin, knots.points.begin() + end, frame.points.begin() + to);
+        if (!knots.depths.empty())
+            std::copy(knots.depths.begin() + begin, knots.depths.begin() + end, frame.depths.begin() + to);
     });
     const CutTriangles& cut = posed.cut;
     const bool is_cut = !cut.pieces.empty();
