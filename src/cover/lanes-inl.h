@@ -177,19 +177,36 @@ struct TileState {
     Job job(int slot, int block) const {
         return static_cast<Job>((slot * blocks_a_side + block / kCellBlocks) * blocks_a_side + block % kCellBlocks);
     }
-    // The vector of a job in the arrangement. `kFine`: of one whose `places` are not empty.
-    template <bool kFine>
-    HWY_INLINE std::size_t place(Job job) const {
+    int slots() const { return arrangement.slots; }
+};
+
+// Where the samples and hits of jobs are. A copy: for all that the compiler knows, writing a hit could change the
+// tile's state. `kFine`: of an arrangement whose `places` are not empty.
+template <bool kFine>
+struct JobPlaces {
+    explicit JobPlaces(const TileState& state)
+        : depth(state.hits.depth.data()),
+          triangle(state.hits.triangle.data()),
+          hits(state.hits),
+          slots(static_cast<std::uint32_t>(state.arrangement.slots)) {}
+
+    // The vector of a job in the arrangement.
+    HWY_INLINE std::size_t vector(Job job) const {
         if constexpr (kFine) return job;
-        return (job % kBlocksPerCell) * static_cast<std::size_t>(arrangement.slots) + job / kBlocksPerCell;
+        return job % kBlocksPerCell * slots + job / kBlocksPerCell;
     }
-    // Its first entry in Hits. Rearranged tiles are whole cells.
-    template <bool kFine>
+    // Its first entry in `depth` and `triangle`, those of Hits. Rearranged tiles are whole cells.
     HWY_INLINE std::size_t entry(Job job) const {
         if constexpr (kFine) return std::size_t{job} * kLanes;
-        return hits.first(static_cast<int>(job % kBlocksPerCell)) + std::size_t{job / kBlocksPerCell} * kLanes;
+        return hits.first(static_cast<int>(job % kBlocksPerCell)) + job / kBlocksPerCell * kLanes;
     }
-    int slots() const { return arrangement.slots; }
+
+    float* depth;
+    std::uint32_t* triangle;
+
+  private:
+    const Hits& hits;
+    std::uint32_t slots;
 };
 
 }  // namespace HWY_NAMESPACE

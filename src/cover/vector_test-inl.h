@@ -45,11 +45,12 @@ std::size_t keep_within_edges(TileState& state, const Tested& tested, std::size_
         limit[k] = hn::Set(f, H.f[kEdge + k][tested.k]);
     }
     Job* HWY_RESTRICT jobs = state.jobs.data();
-    const SampleVector* samples = state.arrangement.samples;
+    const SampleVector* HWY_RESTRICT samples = state.arrangement.samples;
+    const JobPlaces<kFine> places(state);
     std::size_t count = 0;
     for (std::size_t j = 0; j < job_count; ++j) {
         const Job job = jobs[j];
-        const SampleVector& s = samples[state.place<kFine>(job)];
+        const SampleVector& s = samples[places.vector(job)];
         bool any = false;
         for (int lane = 0; lane < kLanes; lane += kWidth) {
             const PathTime<kMoves> time(f, tested, s.t + lane);
@@ -78,37 +79,61 @@ std::size_t keep_within_edges(TileState& state, const Tested& tested, std::size_
     return count;
 }
 
+// A triangle of one segment, read once: for all that the compiler knows, writing a depth could change it.
+template <class K>
+struct Corners {
+    Corners(F f, const LocalTriangle& T) {
+        for (int i = 0; i < 3; ++i) {
+            x[i] = hn::Set(f, T.qx[i]), y[i] = hn::Set(f, T.qy[i]), w[i] = hn::Set(f, T.qw[i]);
+            if constexpr (K::kDefocus) c[i] = hn::Set(f, T.qc[i]);
+            if constexpr (K::kMotion) {
+                dx[i] = hn::Set(f, T.dx[i]), dy[i] = hn::Set(f, T.dy[i]), dw[i] = hn::Set(f, T.dw[i]);
+                if constexpr (K::kDefocus) dc[i] = hn::Set(f, T.dc[i]);
+            }
+        }
+    }
+    Vec x[3], y[3], w[3], c[3], dx[3], dy[3], dw[3], dc[3];
+};
+
 // Where the three vertices are seen from sixteen samples (docs/develop/algorithms.md 1.5).
 struct Deltas {
     Vec x[3], y[3], w[3], z[3];
 };
 
-template <class K>
-HWY_INLINE Deltas deltas(F f, const Tested& tested, const PathTime<K::kMoves>& time, const SampleVector& s, int lane) {
+// `kSpecial`: of a triangle that may be orthographic.
+template <class K, bool kSpecial>
+HWY_INLINE Deltas deltas(F f, const Tested& tested, const Corners<K>& C, const PathTime<K::kMoves>& time,
+                         const SampleVector& s, int lane) {
     Deltas D;
-    const LocalTriangle& T = tested.T;
     const BlurBatch& B = tested.batch;
-    const auto at = [&](const float(&one)[3], const float(&rows)[3][kLanes], int i) HWY_ATTR {
+    const auto at = [&](const Vec(&one)[3], const float(&rows)[3][kLanes], int i) HWY_ATTR {
         if constexpr (K::kMoves == Moves::kAlongPieces) return time.look_up(f, rows[i]);
-        return hn::Set(f, one[i]);
+        return one[i];
     };
     const Vec hx = hn::Load(f, s.x + lane), hy = hn::Load(f, s.y + lane);
     for (int i = 0; i < 3; ++i) {
-        Vec x = at(T.qx, B.qx, i), y = at(T.qy, B.qy, i), w = at(T.qw, B.qw, i), c = at(T.qc, B.qc, i);
+        Vec x = at(C.x, B.qx, i), y = at(C.y, B.qy, i), w = at(C.w, B.qw, i);
         if constexpr (K::kMotion) {
-            x = hn::MulAdd(time.tau, at(T.dx, B.dx, i), x);
-            y = hn::MulAdd(time.tau, at(T.dy, B.dy, i), y);
-            w = hn::MulAdd(time.tau, at(T.dw, B.dw, i), w);
-            if constexpr (K::kDefocus) c = hn::MulAdd(time.tau, at(T.dc, B.dc, i), c);
+            x = hn::MulAdd(time.tau, at(C.dx, B.dx, i), x);
+            y = hn::MulAdd(time.tau, at(C.dy, B.dy, i), y);
+            w = hn::MulAdd(time.tau, at(C.dw, B.dw, i), w);
         }
         if constexpr (K::kDefocus) {
+            Vec c = at(C.c, B.qc, i);
+            if constexpr (K::kMotion) c = hn::MulAdd(time.tau, at(C.dc, B.dc, i), c);
             x = hn::MulAdd(hn::Load(f, s.u + lane), c, x);
             y = hn::MulAdd(hn::Load(f, s.v + lane), c, y);
         }
         D.x[i] = hn::NegMulAdd(hx, w, x);
         D.y[i] = hn::NegMulAdd(hy, w, y);
-        D.w[i] = w;
-        D.z[i] = T.orthographic ? hn::MulAdd(time.tau, at(T.dz, B.dz, i), at(T.qz, B.qz, i)) : w;
+        D.w[i] = D.z[i] = w;
+        if constexpr (kSpecial)
+            if (tested.T.orthographic) {
+                const auto read = [&](const float(&one)[3], const float(&rows)[3][kLanes]) HWY_ATTR {
+                    return K::kMoves == Moves::kAlongPieces ? time.look_up(f, rows[i]) : hn::Set(f, one[i]);
+                };
+                D.z[i] = hn::MulAdd(time.tau, read(tested.T.dz, B.dz), read(tested.T.qz, B.qz));
+            }
     }
     return D;
 }
@@ -216,6 +241,19 @@ inline bool may_leave_depth_range(const LocalTriangle& T) {
     }
     return !within;
 }
+// In any of its segments.
+inline bool may_leave_depth_range(const Tested& tested) {
+    const LocalTriangle& T = tested.T;
+    bool within = !may_leave_depth_range(T);
+    const auto& q = T.orthographic ? tested.batch.qz : tested.batch.qw;
+    const auto& d = T.orthographic ? tested.batch.dz : tested.batch.dw;
+    for (int k = tested.k + 1; k < tested.k + tested.count; ++k)
+        for (int i = 0; i < 3; ++i) {
+            const float z0 = q[i][k], z1 = q[i][k] + d[i][k];
+            within = within && z0 >= T.z_near && z1 >= T.z_near && z0 <= T.z_far && z1 <= T.z_far;
+        }
+    return !within;
+}
 
 // The samples in the lanes of a job, from `lane` on.
 template <bool kFine>
@@ -225,7 +263,8 @@ class LanesOfJob {
         : tile_(state.work.tile),
           indices_(state.indices),
           places_(state.arrangement.places),
-          first_(static_cast<std::uint32_t>(state.place<kFine>(job) * kLanes) + static_cast<std::uint32_t>(lane)),
+          first_(static_cast<std::uint32_t>(JobPlaces<kFine>(state).vector(job) * kLanes) +
+                 static_cast<std::uint32_t>(lane)),
           block_(job % kBlocksPerCell),
           samples_per_block_(state.samples_per_block) {}
 
@@ -246,34 +285,38 @@ class LanesOfJob {
     std::uint32_t first_, block_, samples_per_block_;
 };
 
-// Pass 2: the exact test, depth, opacity and writes.
-template <class K>
+// Pass 2: the exact test, depth, opacity and writes. `kSpecial`: of a triangle that is asked for more than edges and
+// depth, or may be.
+template <class K, bool kSpecial>
 void write_hits(TileState& state, const Tested& tested, std::size_t count) {
     const F f;
     const U u;
     const Vec zero = hn::Zero(f);
     const LocalTriangle& T = tested.T;
-    const bool ask_range = tested.count > 1 || may_leave_depth_range(T);
+    const Corners<K> corners(f, T);
+    const bool ask_range = kSpecial && may_leave_depth_range(tested);
     const auto triangle = hn::Set(u, T.triangle);
     const OpacityTerms terms =
-        T.alpha_tested && count != 0 ? opacity_terms(state.work.frame, T.triangle) : OpacityTerms();
+        kSpecial && T.alpha_tested && count != 0 ? opacity_terms(state.work.frame, T.triangle) : OpacityTerms();
     std::int64_t covered = 0;
-    const SampleVector* samples = state.arrangement.samples;
+    const Job* HWY_RESTRICT jobs = state.jobs.data();
+    const SampleVector* HWY_RESTRICT samples = state.arrangement.samples;
+    float* HWY_RESTRICT farthest_of_jobs = state.farthest.data();
+    const JobPlaces<K::kFine> places(state);
     for (std::size_t j = 0; j < count; ++j) {
-        const Job job = state.jobs[j];
-        const std::size_t place = state.place<K::kFine>(job);
-        const SampleVector& s = samples[place];
-        const std::size_t entry = state.entry<K::kFine>(job);
-        float* depths = &state.hits.depth[entry];
-        std::uint32_t* triangles = &state.hits.triangle[entry];
+        const Job job = jobs[j];
+        const SampleVector& s = samples[places.vector(job)];
+        const std::size_t entry = places.entry(job);
+        float* HWY_RESTRICT depths = places.depth + entry;
+        std::uint32_t* HWY_RESTRICT triangles = places.triangle + entry;
         Vec farthest = zero;
         for (int lane = 0; lane < kLanes; lane += kWidth) {
             const PathTime<K::kMoves> time(f, tested, s.t + lane);
-            const Deltas D = deltas<K>(f, tested, time, s, lane);
+            const Deltas D = deltas<K, kSpecial>(f, tested, corners, time, s, lane);
             const Edges E = edges(D);
             const Decision decision = decide<K>(f, E, time);
             Mask hit = decision.inside;
-            if (T.behind)
+            if (kSpecial && T.behind)
                 hit = hn::And(hit,
                               in_box(f, state.centre, tested, time, hn::Load(f, s.x + lane), hn::Load(f, s.y + lane)));
             const Vec sum = hn::Add(hn::Add(E.e[0], E.e[1]), E.e[2]);
@@ -281,7 +324,7 @@ void write_hits(TileState& state, const Tested& tested, std::size_t count) {
             depth = hn::Div(depth, sum);
             depth = hn::Min(hn::Max(depth, hn::Min(hn::Min(D.z[0], D.z[1]), D.z[2])),
                             hn::Max(hn::Max(D.z[0], D.z[1]), D.z[2]));
-            if (ask_range)
+            if (kSpecial && ask_range)
                 hit = hn::And(hit, hn::And(hn::Ge(depth, hn::Set(f, T.z_near)), hn::Le(depth, hn::Set(f, T.z_far))));
             if (HWY_UNLIKELY(!hn::AllFalse(f, decision.tied)))
                 hit = hn::Or(hit, decide_ties(f, state, tested, s, lane, decision.tied, depth));
@@ -295,7 +338,7 @@ void write_hits(TileState& state, const Tested& tested, std::size_t count) {
                     hn::RebindMask(f, hn::Lt(hn::BitCast(I(), triangle), hn::BitCast(I(), stored_triangle)));
                 hit = hn::Or(hit, hn::And(equal, lower));
             }
-            if (T.alpha_tested && !hn::AllFalse(f, hit))
+            if (kSpecial && T.alpha_tested && !hn::AllFalse(f, hit))
                 hit = decide_opacity(f, state.work, T.triangle, terms, E.e, sum, hit,
                                      LanesOfJob<K::kFine>(state, job, lane));
             const Vec nearest = hn::IfThenElse(hit, depth, stored);
@@ -303,10 +346,19 @@ void write_hits(TileState& state, const Tested& tested, std::size_t count) {
             hn::Store(hn::IfThenElse(hn::RebindMask(u, hit), triangle, stored_triangle), u, triangles + lane);
             farthest = hn::Max(farthest, nearest);
         }
-        state.farthest[job] = hn::GetLane(hn::MaxOfLanes(f, farthest));
+        farthest_of_jobs[job] = hn::GetLane(hn::MaxOfLanes(f, farthest));
     }
     state.counts.tested += static_cast<std::int64_t>(count) * kLanes;
     state.counts.covered += covered;
+}
+
+template <class K>
+void write_hits(TileState& state, const Tested& tested, std::size_t count) {
+    const LocalTriangle& T = tested.T;
+    if (T.behind || T.orthographic || T.alpha_tested || may_leave_depth_range(tested))
+        write_hits<K, true>(state, tested, count);
+    else
+        write_hits<K, false>(state, tested, count);
 }
 
 template <class K>
