@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <pentaprism/error.h>
+#include <pentaprism/frames.h>
 #include <pentaprism/stored_samples.h>
 
 #include "cli/commands.h"
@@ -32,6 +33,9 @@ int develop(const DevelopCommand& command) {
             ErrorKind::kUsage,
             "--rolling-shutter-duration: nothing rolls; give --rolling-shutter top, bottom, left or right as well");
     check_picture_name(command.out, false);
+    if (has_frame_number(command.out))
+        throw Error(ErrorKind::kUsage,
+                    "--output: samples are of one frame, and # numbers frames: " + command.out.string());
     check_output_name(command.out, "--output");
     StoredSamples samples(open_shard_file(command.samples));
     const double reach = samples.reach(command.development);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <fmt/format.h>
 #include <limits>
 #include <memory>
@@ -15,8 +16,9 @@ namespace {
 
 constexpr int kIntMax = std::numeric_limits<int>::max();
 
-bool ends_with(const std::string& text, const std::string& end) {
-    return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+bool is_surroundings_picture(const std::string& file) {
+    const std::string suffix = CLI::detail::to_lower(std::filesystem::path(file).extension().string());
+    return suffix == ".hdr" || suffix == ".exr";
 }
 
 void add_image_options(CLI::App& command, ImageSettings& image) {
@@ -66,7 +68,7 @@ void add_image_options(CLI::App& command, ImageSettings& image) {
               "Linear colour behind the scene (default: the scene's, else 0,0,0), or what surrounds and lights it: a "
               "latitude-longitude picture, .hdr or .exr, or the built-in sky",
               [&](const std::string& text) {
-                  if (text == "sky" || ends_with(text, ".hdr") || ends_with(text, ".exr")) {
+                  if (text == "sky" || is_surroundings_picture(text)) {
                       image.environment = text;
                       return;
                   }

@@ -63,12 +63,22 @@ class Laboratory {
         report_.height = plan_.settings.image.height;
         report_.spp = plan_.settings.image.spp;
         report_.seed = plan_.settings.method.seed;
+        check_scenes();
         for (const std::string& name : scenes_) run_scene(name);
         report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         return std::move(report_);
     }
 
   private:
+    // Scenes that cannot be read are told of now, not after hours of measuring the others.
+    void check_scenes() const {
+        if (scenes_.size() == 1) return;  // read at once
+        for (const std::string& name : scenes_) {
+            tell(short_name(name) + ": checking");
+            load_scene(name);
+        }
+    }
+
     void run_scene(const std::string& name) {
         tell(short_name(name) + ": reading");
         const Scene scene = load_scene(name);

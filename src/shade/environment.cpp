@@ -270,7 +270,7 @@ Environment Environment::sky() {
 std::shared_ptr<const Environment> load_environment(const std::string& name) {
     if (name == "sky") return std::make_shared<const Environment>(Environment::sky());
     Environment::Map map;
-    if (name.size() > 4 && name.substr(name.size() - 4) == ".exr") {
+    if (is_exr_name(name)) {
         const Picture picture = read_picture(name);
         map.width = picture.width;
         map.height = picture.height;

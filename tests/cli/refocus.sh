@@ -32,6 +32,7 @@ succeeds render builtin:cubes --samples 'f.#.5ds' -f 1-3 "${small[@]}" --resume 
 check "sequences of samples resume" test "$(grep -c '"skip"' err)" = 2
 refuses 2 'f.1.5ds: .*seed' render builtin:cubes --samples 'f.#.5ds' -f 1-3 "${small[@]}" --seed 1 --resume
 
+refuses 2 'samples are of one frame' retime a.5ds -o 'r.####.exr' --shutter 0.1
 refuses 2 '--fstop 0.4: the samples were rendered at 0.5' refocus a.5ds -o bad.exr --fstop 0.4
 succeeds render builtin:cubes --samples t.5ds "${small[@]}" --tilt 5
 refuses 2 'rendered with --focus-range, --max' refocus t.5ds -o bad.exr --focus-distance 2

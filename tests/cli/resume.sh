@@ -64,6 +64,12 @@ check "settings that change no pixel are none" "$PENTAPRISM" render builtin:cube
 mkdir day night
 succeeds render builtin:cubes -o day/sky.exr -r 32x16 -s 1
 succeeds render builtin:cubes -o night/sky.exr -r 32x16 -s 1 --exposure -4
+cp day/sky.exr day/LOUD.EXR
+succeeds render builtin:cubes -o lit.png "${small[@]}" --background day/sky.exr
+succeeds render builtin:cubes -o loud.PNG "${small[@]}" --background day/LOUD.EXR
+succeeds compare lit.png loud.PNG --json
+check "suffixes may be upper case" json out 'd["max"] == 0'
+rm lit.png loud.PNG
 for option in --background --aperture-image; do
     key=environment
     [[ $option == --background ]] || key=aperture_image

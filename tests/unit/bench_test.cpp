@@ -226,6 +226,18 @@ TEST(Bench, RefusesNamesThatAreNone) {
     EXPECT_THROW(run_bench(plan), Error);
 }
 
+TEST(Bench, TellsOfASceneThatIsNoneBeforeMeasuringTheOthers) {
+    BenchPlan plan = small_plan();
+    plan.scenes = {"builtin:cubes", "no such scene.glb"};
+    std::vector<std::string> steps;
+    const auto note = [&](const BenchStep& step) {
+        steps.push_back(step.what);
+        return true;
+    };
+    EXPECT_THROW(run_bench(plan, note), Error);
+    EXPECT_EQ(steps, (std::vector<std::string>{"cubes: checking", "no such scene.glb: checking"}));
+}
+
 TEST(BenchReport, JsonHasTheKeysOfTheContract) {
     const nlohmann::json json = nlohmann::json::parse(bench_json(made_up_report()));
     EXPECT_TRUE(json.contains("machine"));
