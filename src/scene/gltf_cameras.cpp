@@ -101,6 +101,13 @@ void read_cameras(Document& document, Scene& scene) {
     }
 }
 
+void check_lenses(Document& document, const Scene& scene) {
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i)
+        if (!scene.cameras[i].perspective && scene.cameras[i].lens.fstop)
+            document.warn(document.item("cameras", "camera", i).where() +
+                          " is orthographic, so it has no fstop: it sees sharply without --lens-radius");
+}
+
 void read_lights(Document& document, Scene& scene) {
     if (!document.root().has_extension("KHR_lights_punctual")) return;
     for (const Object& object : document.root().extension("KHR_lights_punctual").children("lights", "light")) {

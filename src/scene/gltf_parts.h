@@ -33,9 +33,10 @@ DracoMesh decode_draco(const Document& document, const Object& primitive);
 
 void read_cameras(Document& document, Scene& scene);
 void read_lights(Document& document, Scene& scene);
-void read_nodes(Document& document, Scene& scene);  ///< after meshes, cameras and lights
-void read_skins(Document& document, Scene& scene);  ///< after nodes: also checks joints of meshes against skins
-void read_roots(Document& document, Scene& scene);  ///< checks the hierarchy and which nodes are shown
+void read_nodes(Document& document, Scene& scene);          ///< after meshes, cameras and lights
+void check_lenses(Document& document, const Scene& scene);  ///< after nodes, whose extras may describe a lens
+void read_skins(Document& document, Scene& scene);          ///< after nodes: also checks joints of meshes against skins
+void read_roots(Document& document, Scene& scene);          ///< checks the hierarchy and which nodes are shown
 void read_animations(Document& document, Scene& scene);
 
 }  // namespace pentaprism::gltf

@@ -36,6 +36,7 @@ Scene read_scene(gltf::Document& document) {
     gltf::read_cameras(document, scene);
     gltf::read_lights(document, scene);
     gltf::read_nodes(document, scene);
+    gltf::check_lenses(document, scene);
     gltf::read_skins(document, scene);
     gltf::read_roots(document, scene);
     gltf::read_animations(document, scene);

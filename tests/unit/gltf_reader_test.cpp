@@ -245,6 +245,13 @@ TEST_F(GltfReader, LensAndShutterComeFromExtras) {
     EXPECT_TRUE(mentions(scene.warnings, "sensorWidth"));
 }
 
+TEST_F(GltfReader, AnOrthographicCameraHasNoFstop) {
+    file.json["cameras"] = json::array(
+        {{{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0.1}, {"zfar", 9}}}}});
+    file.node({{"camera", 0}, {"extras", {{"fstop", 2}}}});
+    EXPECT_TRUE(mentions(load().warnings, "orthographic, so it has no fstop"));
+}
+
 TEST_F(GltfReader, ThePhysicalCameraExtensionComesBeforeExtras) {
     const json sensor = {{"imageSensor", {{"pixels", {4000, 3000}}, {"pixelSize", {0.000009, 0.000009}}}},
                          {"lens", {{"focalLength", 0.05}, {"apertureRadius", 0.0125}, {"focusDistance", 4}}}};
