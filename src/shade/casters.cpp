@@ -122,12 +122,13 @@ std::vector<Casters::Extents> groups_of(const T* parts, std::size_t count) {
 }
 
 MovingTriangle moving_caster(const WorldMotion& world, const LightView& view, std::uint32_t triangle, int segment) {
-    const Part& part = world.parts[world.part_of[triangle]];
+    const Part& part = world.part_of(triangle);
+    const std::array<std::uint32_t, 3> corners = world.corners(triangle);
     MovingTriangle m{};
     for (int k = 0; k < 3; ++k)
         for (int end = 0; end < 2; ++end) {
             const std::size_t knot = part.moves ? static_cast<std::size_t>(segment + end) : 0;
-            const std::size_t at = world.corners[3 * std::size_t{triangle} + k] + knot * part.vertex_count;
+            const std::size_t at = corners[k] + knot * part.vertex_count;
             const glm::vec3 p = view.place(world.points[at]);
             m.x[k][end] = p.x, m.y[k][end] = p.y, m.z[k][end] = p.z;
             m.w[k][end] = view.perspective ? p.z : 1.0f;
@@ -174,7 +175,7 @@ void bound_range(const Casters& casters, const PartRange& range, BoxWriter& out)
     const Part& part = *range.part;
     CasterBatch batch;
     for (std::uint32_t triangle = range.begin; triangle < range.end; ++triangle) {
-        const OpacityClass opacity = opacity_class(*casters.frame, triangle);
+        const OpacityClass opacity = opacity_class(*casters.world->frame, triangle);
         if (opacity == OpacityClass::kClear) continue;
         for (int segment = 0; segment < (part.moves ? part.segments : 1); ++segment) {
             batch.triangle[batch.count] = triangle;
@@ -215,8 +216,8 @@ std::size_t write_boxes(const Casters& casters, const std::vector<PartRange>& ra
 
 }  // namespace
 
-Casters make_casters(const WorldMotion& world, const Frame& frame, const LightView& view, bool parallel) {
-    Casters casters{&world, &frame, view, nullptr, 0, {}, {}};
+Casters make_casters(const WorldMotion& world, const LightView& view, bool parallel) {
+    Casters casters{&world, view, nullptr, 0, {}, {}};
     std::vector<PartRange> ranges;
     std::vector<std::size_t> first{0};  // where each one's boxes may begin
     for (std::size_t i = 0; i < world.parts.size(); ++i) {

@@ -71,8 +71,7 @@ struct Casters {
         std::uint16_t segment[kLanes];
         bool mixed[kLanes];  ///< its opacity is to be asked: OpacityClass::kMixed
     };
-    const WorldMotion* world;  ///< not owned, as `frame`
-    const Frame* frame;        ///< asked for opacity
+    const WorldMotion* world;  ///< not owned
     LightView view;
     std::unique_ptr<Boxes[]> boxes;  ///< box i in lane i % kLanes of boxes[i / kLanes]; beyond the last one nothing
     std::uint32_t count = 0;         ///< of boxes
@@ -82,6 +81,6 @@ struct Casters {
 };
 
 /// `parallel`: on all cores; false for calls from within a loop over cores that may make others wait for the result.
-Casters make_casters(const WorldMotion& world, const Frame& frame, const LightView& view, bool parallel);
+Casters make_casters(const WorldMotion& world, const LightView& view, bool parallel);
 
 }  // namespace pentaprism
