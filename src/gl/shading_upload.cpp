@@ -87,11 +87,11 @@ glm::vec4 four(const glm::vec4& v) {
 // What vertices carry, four numbers each, one after the other.
 class Attributes {
   public:
-    template <class T>
-    std::int32_t add(const std::vector<T>& values) {
+    template <class Vectors>
+    std::int32_t add(const Vectors& values) {
         if (values.empty()) return -1;
         const std::size_t first = vectors_.size();
-        for (const T& value : values) vectors_.push_back(four(value));
+        for (const auto& value : values) vectors_.push_back(four(value));
         return static_cast<std::int32_t>(first);
     }
     /// The same of what all placements of a primitive share.

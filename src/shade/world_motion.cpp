@@ -81,6 +81,7 @@ WorldMotion world_motion(const Frame& frame, const glm::dvec3& origin, bool froz
         part.moves = knots[i].size() > part.vertex_count;
         part.segments = part.moves ? static_cast<int>(knots[i].size() / part.vertex_count) - 1 : 1;
         world.moves = world.moves || part.moves;
+        world.at_mid_shutter.push_back(segments[i] == 0);
         world.shifts.push_back(part.first_point - frame.parts[i].first_point);
         points += knots[i].size();
     }

@@ -22,7 +22,8 @@ struct WorldMotion {
     std::vector<Bounds> bounds;             ///< of each part over the shutter
     UninitializedVector<glm::vec3> points;  ///< metres from the origin; of each vertex at each knot of its part
     glm::dvec3 origin{0.0};
-    bool moves = false;  ///< any part
+    bool moves = false;                ///< any part
+    std::vector<bool> at_mid_shutter;  ///< of each part: whether its points are as they are then, and no others
 
     const Part& part_of(std::uint32_t triangle) const { return parts[frame->part_of[triangle]]; }
 
