@@ -130,11 +130,14 @@ void draw_cell(const ShadowCellWork& work, float* depths, float* bounds) {
         set_up(work, list, setup);
         for (int lane = 0; lane < count; ++lane) {
             const Casters::Boxes& boxes = work.casters.boxes[list[lane] / kLanes];
-            const std::uint32_t at = list[lane] % kLanes, triangle = boxes.triangle[at];
+            const std::uint32_t at = list[lane] % kLanes, triangle = boxes.triangle(at);
             const Part& part = world.part_of(triangle);
-            const Triangle T{
-                setup,    lane,           static_cast<float>(part.segments), static_cast<float>(boxes.segment[at]),
-                triangle, boxes.mixed[at]};
+            const Triangle T{setup,
+                             lane,
+                             static_cast<float>(part.segments),
+                             static_cast<float>(boxes.segment[at]),
+                             triangle,
+                             boxes.is_mixed(at)};
             if (part.moves)
                 perspective ? draw_triangle<true, true>(work, T, depths, bounds)
                             : draw_triangle<true, false>(work, T, depths, bounds);

@@ -18,10 +18,9 @@ struct World {
     WorldMotion motion;
     Frame frame;  // all of it is solid
 
-    explicit World(support::Random& random) {
+    World() { motion.frame = &frame; }
+    explicit World(support::Random& random) : World() {
         for (int i = 0; i < 12; ++i) add_part(random, random.between(1, 90), random.between(0, 3));
-        frame.parts = motion.parts;
-        motion.frame = &frame;
     }
     World(const World&) = delete;
     World& operator=(const World&) = delete;
@@ -53,6 +52,7 @@ struct World {
             }
         motion.parts.push_back(part);
         motion.bounds.push_back({glm::vec3(-1e15f), glm::vec3(1e15f)});
+        frame.parts = motion.parts;
     }
 };
 
@@ -69,8 +69,8 @@ bool equal(const Casters& a, const Casters& b) {
         const Casters::Boxes &p = a.boxes[i / Casters::kLanes], &q = b.boxes[i / Casters::kLanes];
         const std::uint32_t lane = i % Casters::kLanes;
         if (p.x0[lane] != q.x0[lane] || p.x1[lane] != q.x1[lane] || p.y0[lane] != q.y0[lane] ||
-            p.y1[lane] != q.y1[lane] || p.limit[lane] != q.limit[lane] || p.triangle[lane] != q.triangle[lane] ||
-            p.segment[lane] != q.segment[lane] || p.mixed[lane] != q.mixed[lane])
+            p.y1[lane] != q.y1[lane] || p.limit[lane] != q.limit[lane] || p.triangle(lane) != q.triangle(lane) ||
+            p.segment[lane] != q.segment[lane] || p.is_mixed(lane) != q.is_mixed(lane))
             return false;
     }
     return true;
@@ -130,7 +130,7 @@ TEST(Casters, HoldWhateverTheLightSeesOfThem) {
             for (std::uint32_t i = 0; i < casters.count && !held; ++i) {
                 const Casters::Boxes& boxes = casters.boxes[i / Casters::kLanes];
                 const std::uint32_t lane = i % Casters::kLanes;
-                held = boxes.triangle[lane] == triangle && boxes.segment[lane] == segment && boxes.x0[lane] <= x &&
+                held = boxes.triangle(lane) == triangle && boxes.segment[lane] == segment && boxes.x0[lane] <= x &&
                        boxes.x1[lane] >= x && boxes.y0[lane] <= y && boxes.y1[lane] >= y &&
                        boxes.limit[lane] <= limit_of(static_cast<float>(p.z), view.perspective);
             }
@@ -139,6 +139,35 @@ TEST(Casters, HoldWhateverTheLightSeesOfThem) {
     }
     EXPECT_GT(seen, 100000u);
     EXPECT_EQ(lost, 0u);
+}
+
+// Of long parts a triangle here and there before the light, the others behind it.
+TEST(Casters, KeepTheirNumbersHoweverFarApartTheyAre) {
+    support::Random random(8);
+    for (const double share : {0.5, 0.02, 0.002}) {
+        World world;
+        for (const int segments : {0, 2, 1}) world.add_part(random, random.between(9000, 15000), segments);
+        std::vector<std::pair<std::uint32_t, int>> expected, found;
+        for (std::uint32_t triangle = 0; triangle < world.frame.part_of.size(); ++triangle) {
+            const Part& part = world.motion.part_of(triangle);
+            const bool seen = random.chance(share);
+            for (const std::uint32_t corner : world.motion.corners(triangle))
+                for (int knot = 0; knot < (part.moves ? part.segments + 1 : 1); ++knot)
+                    world.motion.points[corner + knot * part.vertex_count] = {
+                        random.range(-0.1, 0.1), random.range(-0.1, 0.1), seen ? 1.0f : -1.0f};
+            for (int segment = 0; seen && segment < part.segments; ++segment) expected.emplace_back(triangle, segment);
+        }
+        LightView view;
+        view.perspective = true;
+        const Casters casters = make_casters(world.motion, view, false);
+        for (std::uint32_t i = 0; i < casters.count; ++i) {
+            const Casters::Boxes& boxes = casters.boxes[i / Casters::kLanes];
+            const std::uint32_t lane = i % Casters::kLanes;
+            if (boxes.x0[lane] <= boxes.x1[lane]) found.emplace_back(boxes.triangle(lane), boxes.segment[lane]);
+        }
+        EXPECT_EQ(found, expected) << share;
+        EXPECT_TRUE(equal(casters, make_casters(world.motion, view, true))) << share;
+    }
 }
 
 TEST(Casters, AreFoundAsByAskingEachBox) {
