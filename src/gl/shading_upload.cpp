@@ -87,11 +87,11 @@ glm::vec4 four(const glm::vec4& v) {
 // What vertices carry, four numbers each, one after the other.
 class Attributes {
   public:
-    template <class T>
-    std::int32_t add(const std::vector<T>& values) {
+    template <class Vectors>
+    std::int32_t add(const Vectors& values) {
         if (values.empty()) return -1;
         const std::size_t first = vectors_.size();
-        for (const T& value : values) vectors_.push_back(four(value));
+        for (const auto& value : values) vectors_.push_back(four(value));
         return static_cast<std::int32_t>(first);
     }
     /// The same of what all placements of a primitive share.
@@ -339,7 +339,12 @@ void ShadingUpload::put_shadows(const Device& device, const ShadingScene& scene)
     points.reserve(world.points.size());
     for (const glm::vec3& point : world.points) points.push_back(four(point));
     world_points_ = TexelBuffer(points.size() * sizeof(glm::vec4), points.data(), GL_RGBA32F);
-    world_corners_ = TexelBuffer(world.corners.size() * sizeof(std::uint32_t), world.corners.data(), GL_R32UI);
+    const std::uint32_t triangles = world.frame->triangle_count();
+    std::vector<std::uint32_t> corners;
+    corners.reserve(3 * std::size_t{triangles});
+    for (std::uint32_t triangle = 0; triangle < triangles; ++triangle)
+        for (const std::uint32_t corner : world.corners(triangle)) corners.push_back(corner);
+    world_corners_ = TexelBuffer(corners.size() * sizeof(std::uint32_t), corners.data(), GL_R32UI);
     std::vector<glm::vec4> samples;
     for (const ShadowSamples::Cell& cell : shadows.samples().cells())
         for (int i = 0; i < ShadowSamples::kPerCell; ++i) samples.emplace_back(cell.x[i], cell.y[i], cell.t[i], 0.0f);

@@ -36,8 +36,8 @@ class MeanResolver : public AovResolver {
     int count_ = 0;
 };
 
-template <typename T>
-T interpolate(const std::vector<T>& values, const SurfaceSample& s) {
+template <typename Values>
+typename Values::value_type interpolate(const Values& values, const SurfaceSample& s) {
     return s.barycentrics.x * values[s.vertices[0]] + s.barycentrics.y * values[s.vertices[1]] +
            s.barycentrics.z * values[s.vertices[2]];
 }

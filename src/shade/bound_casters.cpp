@@ -20,13 +20,14 @@ std::uint32_t bound(const WorldMotion& world, const Part& part, const LightView&
     static_assert(CasterBatch::kLanes == kLanes);
     const F f;
     const I d;
+    const std::uint32_t shift = world.shifts[world.frame->part_of[batch.triangle[0]]];
     alignas(64) std::int32_t corner[kLanes], knot[kLanes];  // of lanes that are not used the first one's
     for (int lane = 0; lane < kLanes; ++lane) {
         const int from = lane < batch.count ? lane : 0;
         corner[lane] = static_cast<std::int32_t>(3 * batch.triangle[from]);
-        knot[lane] = static_cast<std::int32_t>(batch.segment[from] * part.vertex_count);
+        knot[lane] = static_cast<std::int32_t>(batch.segment[from] * part.vertex_count + shift);
     }
-    const auto* corners = reinterpret_cast<const std::int32_t*>(world.corners.data());
+    const auto* corners = reinterpret_cast<const std::int32_t*>(world.frame->corners.data());
     const hn::Vec<I> step = hn::Set(d, static_cast<std::int32_t>(part.vertex_count));
     const Vec largest = hn::Set(f, kLargestOfCasters), near = hn::Set(f, kNearestToLight), one = hn::Set(f, 1.0f);
     std::uint32_t bounded = 0;

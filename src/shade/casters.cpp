@@ -59,7 +59,17 @@ bool is_usable(const MovingTriangle& m) {
     return usable;
 }
 
-// Where boxes are written, one after the other.
+constexpr std::uint8_t kNothing = 0xff;  // no limit has this number
+
+void clear(Casters::Extents& extents, std::size_t first) {
+    for (std::size_t lane = first; lane < Casters::kLanes; ++lane) {
+        extents.x0[lane] = extents.y0[lane] = INFINITY;
+        extents.x1[lane] = extents.y1[lane] = -INFINITY;
+        extents.limit[lane] = kNothing;
+    }
+}
+
+// Where boxes are written, one after the other. A block ends early where the next triangle's number is too far off.
 class BoxWriter {
   public:
     BoxWriter(Casters::Boxes* boxes, std::size_t first) : boxes_(boxes), next_(first) {}
@@ -72,37 +82,59 @@ class BoxWriter {
         if (view.perspective &&
             (x0 > kWidestTangent || x1 < -kWidestTangent || y0 > kWidestTangent || y1 < -kWidestTangent))
             return;
-        Casters::Boxes& out = boxes_[next_ / Casters::kLanes];
+        Casters::Boxes& out = block_for(batch.triangle[in_batch], batch.mixed[in_batch]);
         const std::size_t lane = next_++ % Casters::kLanes;
         out.x0[lane] = x0, out.x1[lane] = x1, out.y0[lane] = y0, out.y1[lane] = y1;
         out.limit[lane] = static_cast<std::uint8_t>(view.perspective ? limit_of(bounds.nearest[in_batch], true) : 0);
-        out.triangle[lane] = batch.triangle[in_batch];
-        out.segment[lane] = batch.segment[in_batch];
-        out.mixed[lane] = batch.mixed[in_batch];
+        out.segment[lane] = static_cast<std::uint8_t>(batch.segment[in_batch]);
     }
 
-    /// Box i once more.
-    void copy(std::size_t i) {
-        const Casters::Boxes& in = boxes_[i / Casters::kLanes];
-        Casters::Boxes& out = boxes_[next_ / Casters::kLanes];
-        const std::size_t was = i % Casters::kLanes, lane = next_++ % Casters::kLanes;
-        out.x0[lane] = in.x0[was], out.x1[lane] = in.x1[was], out.y0[lane] = in.y0[was], out.y1[lane] = in.y1[was];
-        out.limit[lane] = in.limit[was], out.triangle[lane] = in.triangle[was];
-        out.segment[lane] = in.segment[was], out.mixed[lane] = in.mixed[was];
+    /// The boxes of the lanes [begin, end), which lie farther on, once more.
+    void copy(std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end;) {
+            // It may be the one that is written.
+            const Casters::Boxes in = boxes_[i / Casters::kLanes];
+            const std::size_t last = std::min(end, (i / Casters::kLanes + 1) * Casters::kLanes);
+            for (; i < last; ++i) {
+                const std::size_t was = i % Casters::kLanes;
+                if (in.limit[was] == kNothing) continue;
+                Casters::Boxes& out = block_for(in.triangle(was), in.is_mixed(was));
+                const std::size_t lane = next_++ % Casters::kLanes;
+                out.x0[lane] = in.x0[was], out.x1[lane] = in.x1[was];
+                out.y0[lane] = in.y0[was], out.y1[lane] = in.y1[was];
+                out.limit[lane] = in.limit[was], out.segment[lane] = in.segment[was];
+            }
+        }
+    }
+
+    /// Leaves nothing in the rest of the block.
+    void close() {
+        const std::size_t first = next_ % Casters::kLanes;
+        if (first == 0) return;
+        Casters::Boxes& block = boxes_[next_ / Casters::kLanes];
+        clear(block, first);
+        std::fill(block.beyond_first + first, block.beyond_first + Casters::kLanes, std::uint8_t{0});
+        std::fill(block.segment + first, block.segment + Casters::kLanes, std::uint8_t{0});
+        next_ += Casters::kLanes - first;
     }
 
   private:
+    // The block of the next lane, in which triangle and opacity are written already.
+    Casters::Boxes& block_for(std::uint32_t triangle, bool mixed) {
+        if (next_ % Casters::kLanes != 0 &&
+            triangle - boxes_[next_ / Casters::kLanes].first_triangle >= Casters::Boxes::kSpan)
+            close();
+        Casters::Boxes& block = boxes_[next_ / Casters::kLanes];
+        const std::size_t lane = next_ % Casters::kLanes;
+        if (lane == 0) block.first_triangle = triangle, block.mixed = 0;
+        block.beyond_first[lane] = static_cast<std::uint8_t>(triangle - block.first_triangle);
+        block.mixed = static_cast<std::uint16_t>(block.mixed | (mixed ? 1u : 0u) << lane);
+        return block;
+    }
+
     Casters::Boxes* boxes_;
     std::size_t next_;
 };
-
-void clear(Casters::Extents& extents, std::size_t first) {
-    for (std::size_t lane = first; lane < Casters::kLanes; ++lane) {
-        extents.x0[lane] = extents.y0[lane] = INFINITY;
-        extents.x1[lane] = extents.y1[lane] = -INFINITY;
-        extents.limit[lane] = 0xff;
-    }
-}
 
 // Bounds of sixteen as one.
 void unite(const Casters::Extents& all, Casters::Extents& out, std::size_t lane) {
@@ -122,12 +154,13 @@ std::vector<Casters::Extents> groups_of(const T* parts, std::size_t count) {
 }
 
 MovingTriangle moving_caster(const WorldMotion& world, const LightView& view, std::uint32_t triangle, int segment) {
-    const Part& part = world.parts[world.part_of[triangle]];
+    const Part& part = world.part_of(triangle);
+    const std::array<std::uint32_t, 3> corners = world.corners(triangle);
     MovingTriangle m{};
     for (int k = 0; k < 3; ++k)
         for (int end = 0; end < 2; ++end) {
             const std::size_t knot = part.moves ? static_cast<std::size_t>(segment + end) : 0;
-            const std::size_t at = world.corners[3 * std::size_t{triangle} + k] + knot * part.vertex_count;
+            const std::size_t at = corners[k] + knot * part.vertex_count;
             const glm::vec3 p = view.place(world.points[at]);
             m.x[k][end] = p.x, m.y[k][end] = p.y, m.z[k][end] = p.z;
             m.w[k][end] = view.perspective ? p.z : 1.0f;
@@ -174,7 +207,7 @@ void bound_range(const Casters& casters, const PartRange& range, BoxWriter& out)
     const Part& part = *range.part;
     CasterBatch batch;
     for (std::uint32_t triangle = range.begin; triangle < range.end; ++triangle) {
-        const OpacityClass opacity = opacity_class(*casters.frame, triangle);
+        const OpacityClass opacity = opacity_class(*casters.world->frame, triangle);
         if (opacity == OpacityClass::kClear) continue;
         for (int segment = 0; segment < (part.moves ? part.segments : 1); ++segment) {
             batch.triangle[batch.count] = triangle;
@@ -187,7 +220,7 @@ void bound_range(const Casters& casters, const PartRange& range, BoxWriter& out)
 }
 
 // Each range writes where all before it leave room, and then what they wrote moves together: little memory is
-// touched that is not needed. Returns how many there are.
+// touched that is not needed: the same blocks as if one had written all. Returns how many lanes there are.
 std::size_t write_boxes(const Casters& casters, const std::vector<PartRange>& ranges,
                         const std::vector<std::size_t>& first, bool parallel) {
     struct Written {
@@ -195,7 +228,8 @@ std::size_t write_boxes(const Casters& casters, const std::vector<PartRange>& ra
     };
     std::vector<Written> written(ranges.size());
     for_ranges(parallel, ranges.size(), [&](std::size_t begin, std::size_t end) {
-        // Two threads do not share a cache line.
+        // Two threads do not share a block. There is room for those that end early: numbers that are left out between
+        // two triangles have theirs, and between two ranges there are kLanes more.
         BoxWriter writer(casters.boxes.get(), (first[begin] + Casters::kLanes - 1) / Casters::kLanes * Casters::kLanes);
         for (std::size_t i = begin; i < end; ++i) {
             written[i].begin = writer.next();
@@ -208,15 +242,16 @@ std::size_t write_boxes(const Casters& casters, const std::vector<PartRange>& ra
         if (together.next() == range.begin)
             together = BoxWriter(casters.boxes.get(), range.end);
         else
-            for (std::size_t i = range.begin; i < range.end; ++i) together.copy(i);
+            together.copy(range.begin, range.end);
     }
+    together.close();
     return together.next();
 }
 
 }  // namespace
 
-Casters make_casters(const WorldMotion& world, const Frame& frame, const LightView& view, bool parallel) {
-    Casters casters{&world, &frame, view, nullptr, 0, {}, {}};
+Casters make_casters(const WorldMotion& world, const LightView& view, bool parallel) {
+    Casters casters{&world, view, nullptr, 0, {}, {}};
     std::vector<PartRange> ranges;
     std::vector<std::size_t> first{0};  // where each one's boxes may begin
     for (std::size_t i = 0; i < world.parts.size(); ++i) {
@@ -230,9 +265,7 @@ Casters make_casters(const WorldMotion& world, const Frame& frame, const LightVi
     }
     casters.boxes = std::make_unique_for_overwrite<Casters::Boxes[]>(first.back() / Casters::kLanes + 1);
     casters.count = static_cast<std::uint32_t>(write_boxes(casters, ranges, first, parallel));
-    const std::size_t used = (casters.count + Casters::kLanes - 1) / Casters::kLanes;
-    if (casters.count % Casters::kLanes != 0) clear(casters.boxes[used - 1], casters.count % Casters::kLanes);
-    casters.groups = groups_of(casters.boxes.get(), used);
+    casters.groups = groups_of(casters.boxes.get(), casters.count / Casters::kLanes);
     casters.groups_of_groups = groups_of(casters.groups.data(), casters.groups.size());
     return casters;
 }

@@ -65,23 +65,30 @@ struct Casters {
         float x0[kLanes], x1[kLanes], y0[kLanes], y1[kLanes];
         std::uint8_t limit[kLanes];  ///< the least that holds a part of it
     };
-    /// One motion segment each of sixteen triangles.
+    /// One motion segment each of up to sixteen triangles, in as few bytes as they go into: there are millions.
     struct alignas(64) Boxes : Extents {
-        std::uint32_t triangle[kLanes];  ///< of the frame
-        std::uint16_t segment[kLanes];
-        bool mixed[kLanes];  ///< its opacity is to be asked: OpacityClass::kMixed
+        static constexpr std::uint32_t kSpan = 256;  ///< how far numbers of triangles in one block may lie apart
+        std::uint8_t beyond_first[kLanes];
+        std::uint8_t segment[kLanes];  ///< a path has 64 at most
+        std::uint32_t first_triangle;
+        std::uint16_t mixed;  ///< a bit for each lane
+
+        /// Of the frame.
+        std::uint32_t triangle(std::size_t lane) const { return first_triangle + beyond_first[lane]; }
+        /// Its opacity is to be asked: OpacityClass::kMixed.
+        bool is_mixed(std::size_t lane) const { return (mixed >> lane & 1) != 0; }
     };
-    const WorldMotion* world;  ///< not owned, as `frame`
-    const Frame* frame;        ///< asked for opacity
+    static_assert(sizeof(Boxes) == 20 * kLanes);
+    const WorldMotion* world;  ///< not owned
     LightView view;
-    std::unique_ptr<Boxes[]> boxes;  ///< box i in lane i % kLanes of boxes[i / kLanes]; beyond the last one nothing
-    std::uint32_t count = 0;         ///< of boxes
+    std::unique_ptr<Boxes[]> boxes;  ///< box i in lane i % kLanes of boxes[i / kLanes]
+    std::uint32_t count = 0;         ///< of lanes; in those that are left over in a block is nothing
     /// A tree, as neighbours in the mesh lie near each other: of all boxes in each of `boxes` a lane, and of each of
     /// these again.
     std::vector<Extents> groups, groups_of_groups;
 };
 
 /// `parallel`: on all cores; false for calls from within a loop over cores that may make others wait for the result.
-Casters make_casters(const WorldMotion& world, const Frame& frame, const LightView& view, bool parallel);
+Casters make_casters(const WorldMotion& world, const LightView& view, bool parallel);
 
 }  // namespace pentaprism

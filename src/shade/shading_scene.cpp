@@ -44,14 +44,18 @@ BoundMaterial bind(const Material& material, const Textures* textures) {
     return bound;
 }
 
-void pose_part(const Frame& frame, const Part& part, const glm::dvec3& eye, ShadedPart& out) {
-    const std::size_t n = out.primitive->positions.size();
-    std::vector<glm::dvec3> world(n);
-    out.positions.resize(n);
-    out.normals.resize(n);
-    pose_positions(*frame.scene, frame.middle, part.placement, world);
+UninitializedVector<glm::vec3> posed_positions(const Frame& frame, const Placement& placement, std::size_t count,
+                                               const glm::dvec3& eye) {
+    UninitializedVector<glm::dvec3> world(count);
+    pose_positions(*frame.scene, frame.middle, placement, world);
+    UninitializedVector<glm::vec3> positions(count);
+    for (std::size_t i = 0; i < count; ++i) positions[i] = glm::vec3(world[i] - eye);
+    return positions;
+}
+
+void pose_directions(const Frame& frame, const Part& part, ShadedPart& out) {
+    out.normals.resize(out.primitive->positions.size());
     pose_normals(*frame.scene, frame.middle, part.placement, out.normals);
-    for (std::size_t i = 0; i < n; ++i) out.positions[i] = glm::vec3(world[i] - eye);
     if (!frame.textures) return;
     const auto tangents = frame.textures->tangents(part.placement.mesh, part.placement.primitive);
     out.tangents.resize(tangents.size());
@@ -84,11 +88,18 @@ ShadingScene::ShadingScene(const Frame& frame, const ShadingOptions& options) : 
     materials_.push_back(bind(Material{}, nullptr));
 
     parts_.resize(frame.parts.size());
+    positions_.resize(parts_.size());
+    const WorldMotion& world = shadows_->world();
     parallel_for(parts_.size(), [&](std::size_t i) {
         const Part& part = frame.parts[i];
         parts_[i].primitive = &scene.meshes[part.placement.mesh].primitives[part.placement.primitive];
         parts_[i].material = part.material == kNone ? &materials_.back() : &materials_[part.material];
-        pose_part(frame, part, eye, parts_[i]);
+        const std::size_t count = parts_[i].primitive->positions.size();
+        if (shadows_->any() && world.at_mid_shutter[i])
+            parts_[i].positions = std::span(world.points).subspan(world.parts[i].first_point, count);
+        else
+            parts_[i].positions = positions_[i] = posed_positions(frame, part.placement, count, eye);
+        pose_directions(frame, part, parts_[i]);
     });
 }
 

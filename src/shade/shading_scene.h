@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <pentaprism/scene.h>
+#include <span>
 #include <vector>
 
 #include "frame/frame.h"
@@ -28,9 +29,9 @@ struct BoundMaterial {
 struct ShadedPart {
     const Primitive* primitive = nullptr;
     const BoundMaterial* material = nullptr;
-    std::vector<glm::vec3> positions;  ///< of each vertex, relative to the eye: world axes
-    std::vector<glm::vec3> normals;    ///< unit
-    std::vector<glm::vec4> tangents;   ///< where the material has a normal map
+    std::span<const glm::vec3> positions;  ///< of each vertex, relative to the eye: world axes
+    std::vector<glm::vec3> normals;        ///< unit
+    std::vector<glm::vec4> tangents;       ///< where the material has a normal map
 };
 
 /// What shares one evaluation: the samples of a pixel and a triangle, those that see a cell of the triangle
@@ -86,6 +87,7 @@ class ShadingScene {
     ShadingOptions options_;
     std::vector<BoundMaterial> materials_;  // the scene's, then the default one
     std::vector<ShadedPart> parts_;
+    std::vector<UninitializedVector<glm::vec3>> positions_;  // of parts whose points the shadows do not have
     Lighting lighting_;
     std::unique_ptr<const Shadows> shadows_;
     struct CameraKnot {

@@ -39,10 +39,9 @@ struct ShadowMap::Level {
     std::unique_ptr<std::atomic<Page*>[]> pages;
 };
 
-ShadowMap::ShadowMap(const WorldMotion& world, const Frame& frame, const ShadowSamples& samples, ShadowCellStore& store,
+ShadowMap::ShadowMap(const WorldMotion& world, const ShadowSamples& samples, ShadowCellStore& store,
                      const LightView& view, int width)
     : world_(world),
-      frame_(frame),
       samples_(samples),
       store_(store),
       find_(find_casters()),
@@ -67,7 +66,7 @@ const Casters& ShadowMap::casters() const {
 }
 
 void ShadowMap::make(bool parallel) const {
-    casters_ = make_casters(world_, frame_, view_, parallel);
+    casters_ = make_casters(world_, view_, parallel);
 }
 
 int ShadowMap::exponent_of(float texel) const {

@@ -22,10 +22,10 @@ class ShadowMap {
   public:
     static constexpr int kSamples = ShadowSamples::kSamples;
 
-    /// `width`: texels that a level spans, both ways; a power of two. `world`, `frame`, `samples` and `store`, of
+    /// `width`: texels that a level spans, both ways; a power of two. `world`, `samples` and `store`, of
     /// ShadowSamples::kPerCell floats, must outlive what is asked.
-    ShadowMap(const WorldMotion& world, const Frame& frame, const ShadowSamples& samples, ShadowCellStore& store,
-              const LightView& view, int width);
+    ShadowMap(const WorldMotion& world, const ShadowSamples& samples, ShadowCellStore& store, const LightView& view,
+              int width);
     ~ShadowMap();
     ShadowMap(const ShadowMap&) = delete;
     ShadowMap& operator=(const ShadowMap&) = delete;
@@ -70,7 +70,6 @@ class ShadowMap {
     bool render(int exponent, int limit, int cx, int cy, float* bounds) const;
 
     const WorldMotion& world_;
-    const Frame& frame_;
     const ShadowSamples& samples_;
     ShadowCellStore& store_;
     FindCasters find_;

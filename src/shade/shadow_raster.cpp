@@ -35,7 +35,7 @@ struct Triangle {
 // Those of the hits that are opaque, as the camera's coverage stage decides it. `terms`: of the triangle, when asked.
 Mask opaque(const ShadowCellWork& work, std::uint32_t triangle, std::optional<OpacityTerms>& terms, int first,
             const Vec e[3], Vec sum, Mask hit) {
-    const Frame& frame = *work.casters.frame;
+    const Frame& frame = *work.casters.world->frame;
     if (!terms) terms = opacity_terms(frame, triangle);
     const TileWork tile_work{frame, work.samples.table(), {}, {}, Tile{}};
     return decide_opacity(F(), tile_work, triangle, *terms, e, sum, hit, [&](int lane) {
@@ -130,11 +130,14 @@ void draw_cell(const ShadowCellWork& work, float* depths, float* bounds) {
         set_up(work, list, setup);
         for (int lane = 0; lane < count; ++lane) {
             const Casters::Boxes& boxes = work.casters.boxes[list[lane] / kLanes];
-            const std::uint32_t at = list[lane] % kLanes, triangle = boxes.triangle[at];
-            const Part& part = world.parts[world.part_of[triangle]];
-            const Triangle T{
-                setup,    lane,           static_cast<float>(part.segments), static_cast<float>(boxes.segment[at]),
-                triangle, boxes.mixed[at]};
+            const std::uint32_t at = list[lane] % kLanes, triangle = boxes.triangle(at);
+            const Part& part = world.part_of(triangle);
+            const Triangle T{setup,
+                             lane,
+                             static_cast<float>(part.segments),
+                             static_cast<float>(boxes.segment[at]),
+                             triangle,
+                             boxes.is_mixed(at)};
             if (part.moves)
                 perspective ? draw_triangle<true, true>(work, T, depths, bounds)
                             : draw_triangle<true, false>(work, T, depths, bounds);

@@ -5,7 +5,8 @@
 namespace pentaprism {
 
 void ShadowReceiver::start(const WorldMotion& world, std::uint32_t triangle, const ShadowMap& map) {
-    const Part& part = world.parts[world.part_of[triangle]];
+    const Part& part = world.part_of(triangle);
+    const std::array<std::uint32_t, 3> corners = world.corners(triangle);
     map_ = &map;
     key_ = -1;
     segments_ = part.moves ? part.segments : 1;
@@ -16,7 +17,7 @@ void ShadowReceiver::start(const WorldMotion& world, std::uint32_t triangle, con
     float* out = knots_.data();
     for (int knot = 0; knot < knots; ++knot)
         for (int k = 0; k < 3; ++k) {
-            const std::uint32_t at = world.corners[3 * std::size_t{triangle} + k] + knot * part.vertex_count;
+            const std::uint32_t at = corners[k] + knot * part.vertex_count;
             const glm::vec3 p = view.place(world.points[at]);
             for (int axis = 0; axis < 3; ++axis) *out++ = p[axis];
         }

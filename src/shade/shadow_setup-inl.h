@@ -114,9 +114,9 @@ struct ShadowCorners {
         const WorldMotion& world = *work.casters.world;
         for (int lane = 0; lane < kLanes; ++lane) {
             const Casters::Boxes& boxes = work.casters.boxes[list[lane] / kLanes];
-            const std::uint32_t at = list[lane] % kLanes, triangle = boxes.triangle[at];
-            const Part& part = world.parts[world.part_of[triangle]];
-            const std::uint32_t* corner = &world.corners[3 * std::size_t{triangle}];
+            const std::uint32_t at = list[lane] % kLanes, triangle = boxes.triangle(at);
+            const Part& part = world.part_of(triangle);
+            const std::array<std::uint32_t, 3> corner = world.corners(triangle);
             const std::uint32_t knot = boxes.segment[at] * part.vertex_count, step = part.moves ? part.vertex_count : 0;
             for (int k = 0; k < 3; ++k) {
                 open[k][lane] = static_cast<std::int32_t>(corner[k] + knot);

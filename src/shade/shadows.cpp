@@ -68,7 +68,7 @@ Shadows::Shadows(const Frame& frame, const Lighting& lighting, const glm::dvec3&
             view.perspective = !sun;
             view.position = maps.position;
             view.axes = glm::mat3(faces == 1 ? maps.axes : face_axes(maps.axes, static_cast<int>(face)));
-            maps.faces.push_back(std::make_unique<ShadowMap>(world_, frame, *samples_, *store_, view, width));
+            maps.faces.push_back(std::make_unique<ShadowMap>(world_, *samples_, *store_, view, width));
             if (sun) maps.faces.back()->prepare();  // every picture asks for it
         }
     }

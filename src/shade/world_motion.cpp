@@ -58,9 +58,9 @@ Knots pose_knots(const Frame& frame, const Part& part, int segments, const Poses
 
 WorldMotion world_motion(const Frame& frame, const glm::dvec3& origin, bool frozen) {
     WorldMotion world;
+    world.frame = &frame;
     world.origin = origin;
     world.parts = frame.parts;
-    world.part_of = frame.part_of;
     int most = 1;
     for (const Part& part : frame.parts) most = std::max(most, part.segments);
     const bool open = !frozen && frame.view.shutter.close > frame.view.shutter.open;
@@ -81,14 +81,14 @@ WorldMotion world_motion(const Frame& frame, const glm::dvec3& origin, bool froz
         part.moves = knots[i].size() > part.vertex_count;
         part.segments = part.moves ? static_cast<int>(knots[i].size() / part.vertex_count) - 1 : 1;
         world.moves = world.moves || part.moves;
+        world.at_mid_shutter.push_back(segments[i] == 0);
+        world.shifts.push_back(part.first_point - frame.parts[i].first_point);
         points += knots[i].size();
     }
     world.points.resize(points);
     world.bounds.resize(world.parts.size());
-    world.corners.resize(frame.corners.size());
     parallel_for(segments.size(), [&](std::size_t i) {
-        const Part &part = world.parts[i], &was = frame.parts[i];
-        glm::vec3* out = world.points.data() + part.first_point;
+        glm::vec3* out = world.points.data() + world.parts[i].first_point;
         WorldMotion::Bounds bounds;
         for (const glm::dvec3& p : knots[i]) {
             *out = glm::vec3(p - origin);
@@ -96,9 +96,6 @@ WorldMotion world_motion(const Frame& frame, const glm::dvec3& origin, bool froz
             bounds.high = glm::max(bounds.high, *out++);
         }
         world.bounds[i] = bounds;
-        const std::size_t first = 3 * std::size_t{part.first_triangle}, count = 3 * std::size_t{part.triangle_count};
-        for (std::size_t c = first; c < first + count; ++c)
-            world.corners[c] = frame.corners[c] - was.first_point + part.first_point;
         knots[i] = {};
     });
     return world;

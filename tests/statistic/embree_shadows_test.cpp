@@ -1,6 +1,7 @@
 // Shadow maps against rays: of the points that a picture shows, how many lie in a shadow that no ray finds (a surface
 // shadows itself), and how many in light that rays do not find (it leaks). Nothing moves; pixels at edges of shadows
 // are left out, as the map filters them.
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
@@ -32,8 +33,10 @@ class Rays {
                                                sizeof(glm::vec3), world.points.size());
         std::copy(world.points.begin(), world.points.end(), static_cast<glm::vec3*>(points));
         void* corners = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                3 * sizeof(std::uint32_t), world.corners.size() / 3);
-        std::copy(world.corners.begin(), world.corners.end(), static_cast<std::uint32_t*>(corners));
+                                                3 * sizeof(std::uint32_t), frame.triangle_count());
+        for (std::uint32_t triangle = 0; triangle < frame.triangle_count(); ++triangle)
+            std::ranges::copy(world.corners(triangle),
+                              static_cast<std::uint32_t*>(corners) + 3 * std::size_t{triangle});
         rtcSetGeometryUserData(geometry, this);
         rtcSetGeometryOccludedFilterFunction(geometry, filter);
         rtcCommitGeometry(geometry);

@@ -17,13 +17,27 @@ constexpr int kWidth = 64;       // texels of the level: four cells
 constexpr float kScale = 32.0f;  // texels a unit
 
 // Triangles of all sizes before a light at the origin that looks along z; half of them move, in one or three pieces.
-WorldMotion random_world(support::Random& random) {
-    WorldMotion world;
+struct World {
+    WorldMotion motion;
+    Frame frame;  // all of it is solid
+
+    World() { motion.frame = &frame; }
+    World(const World&) = delete;
+    World& operator=(const World&) = delete;
+    void add_part(const Part& part) {
+        motion.parts.push_back(part);
+        motion.shifts.push_back(0);
+        motion.bounds.push_back({glm::vec3(-100.0f), glm::vec3(100.0f)});
+        frame.parts = motion.parts;
+    }
+};
+
+void fill(World& world, support::Random& random) {
     const auto part_of = [&](int segments, bool moves) {
         Part part;
-        part.first_triangle = static_cast<std::uint32_t>(world.part_of.size());
+        part.first_triangle = static_cast<std::uint32_t>(world.frame.part_of.size());
         part.triangle_count = 60;
-        part.first_point = static_cast<std::uint32_t>(world.points.size());
+        part.first_point = static_cast<std::uint32_t>(world.motion.points.size());
         part.vertex_count = 3 * part.triangle_count;
         part.segments = segments;
         part.moves = moves;
@@ -36,40 +50,29 @@ WorldMotion random_world(support::Random& random) {
                                    1.0 + 0.2 * random.range(-1.0, 1.0));
                 points.emplace_back(p.x * middle.z, p.y * middle.z, p.z * middle.z);
             }
-            world.part_of.push_back(static_cast<std::uint32_t>(world.parts.size()));
+            world.frame.part_of.push_back(static_cast<std::uint32_t>(world.frame.parts.size()));
         }
-        for (std::uint32_t i = 0; i < part.vertex_count; ++i) world.corners.push_back(part.first_point + i);
+        for (std::uint32_t i = 0; i < part.vertex_count; ++i) world.frame.corners.push_back(part.first_point + i);
         for (int knot = 0; knot < (moves ? segments + 1 : 1); ++knot)
             for (glm::vec3& p : points) {
-                world.points.push_back(p);
+                world.motion.points.push_back(p);
                 p += 0.1f * glm::vec3(random.range(-1.0, 1.0), random.range(-1.0, 1.0), random.range(-1.0, 1.0));
             }
-        world.parts.push_back(part);
-        world.bounds.push_back({glm::vec3(-100.0f), glm::vec3(100.0f)});
+        world.add_part(part);
     };
     part_of(1, false);
     part_of(1, true);
     part_of(3, true);
-    return world;
-}
-
-// What make_casters() asks for opacity: all is solid.
-Frame solid_frame(const WorldMotion& world) {
-    Frame frame;
-    frame.parts = world.parts;
-    frame.part_of = world.part_of;
-    return frame;
 }
 
 // As the light sees it, in pixels, for the exact test.
-Frame in_texels(const WorldMotion& world, const LightView& light) {
-    Frame frame = solid_frame(world);
+Frame in_texels(const World& world, const LightView& light) {
+    Frame frame = world.frame;
     frame.view.width = frame.view.height = kWidth;
     frame.view.perspective = light.perspective;
     frame.view.depth_near = light.perspective ? kNearestToLight : -1e30;
     frame.view.depth_far = 1e30;
-    frame.corners = world.corners;
-    for (const glm::vec3& point : world.points) {
+    for (const glm::vec3& point : world.motion.points) {
         const glm::vec3 p = light.place(point);
         frame.points.emplace_back(kScale * p.x, kScale * p.y, light.perspective ? p.z : 1.0f, 0.0f);
         frame.depths.push_back(p.z);
@@ -121,11 +124,12 @@ TEST(ShadowRaster, ACellHoldsWhatTheExactTestSeesOnEveryCpuTarget) {
     std::size_t hits_seen = 0, differ = 0, wrong = 0;
     for (int round = 0; round < 10; ++round)
         for (const bool perspective : {true, false}) {
-            const WorldMotion world = random_world(random);
+            World world;
+            fill(world, random);
             LightView view;
             view.perspective = perspective;
-            const Frame solid = solid_frame(world), exact = in_texels(world, view);
-            const Casters casters = make_casters(world, solid, view, false);
+            const Frame exact = in_texels(world, view);
+            const Casters casters = make_casters(world.motion, view, false);
             std::vector<std::uint32_t> list(casters.count);
             for (std::uint32_t i = 0; i < list.size(); ++i) list[i] = i;
             for (int cell = 0; cell < 4; ++cell) {
@@ -158,17 +162,15 @@ TEST(ShadowRaster, ACellHoldsWhatTheExactTestSeesOnEveryCpuTarget) {
 
 // A square whose depth grows by 3 from left to right, over 64 texels.
 TEST(ShadowRaster, BeyondASampleItsTriangleMayRecedeByHalfATexelButNotBeyondItsEnd) {
-    WorldMotion world;
+    World world;
     Part part;
     part.triangle_count = 2;
     part.vertex_count = 4;
-    world.parts.push_back(part);
-    world.bounds.push_back({glm::vec3(-100.0f), glm::vec3(100.0f)});
-    world.points = {{-1, -1, 2}, {1, -1, 5}, {1, 1, 5}, {-1, 1, 2}};
-    world.corners = {0, 1, 2, 0, 2, 3};
-    world.part_of = {0, 0};
-    const Frame solid = solid_frame(world);
-    const Casters casters = make_casters(world, solid, LightView{}, false);
+    world.add_part(part);
+    world.motion.points = {{-1, -1, 2}, {1, -1, 5}, {1, 1, 5}, {-1, 1, 2}};
+    world.frame.corners = {0, 1, 2, 0, 2, 3};
+    world.frame.part_of = {0, 0};
+    const Casters casters = make_casters(world.motion, LightView{}, false);
     const ShadowSamples samples(3);
     const std::vector<std::uint32_t> list = {0, 1};
     AlignedVector<float> depths(ShadowSamples::kPerCell), bounds(ShadowSamples::kPerCell);

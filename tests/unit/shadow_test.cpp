@@ -59,7 +59,7 @@ struct Stage {
     double lit(std::uint32_t triangle, const glm::vec3& b, float texel, int quarter = -1, int seeds = 64) const {
         const WorldMotion world = world_motion(frame, glm::dvec3(0.0), true);
         glm::vec3 position(0.0f);
-        for (int i = 0; i < 3; ++i) position += b[i] * world.points[world.corners[3 * triangle + i]];
+        for (int i = 0; i < 3; ++i) position += b[i] * world.points[world.corners(triangle)[i]];
         const ShadowCellStore::Visit visit(shadows->store());
         ShadowsOnTriangle on_triangle;
         on_triangle.start(*shadows, triangle);
