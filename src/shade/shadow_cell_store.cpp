@@ -36,18 +36,18 @@ const float* ShadowCellStore::keep(Cell& cell, const float* depths) {
     std::copy_n(depths, floats_, room.get());
     cell.asked_.store(now_.load(std::memory_order_relaxed), std::memory_order_relaxed);
     cell.depths_.store(room.get(), std::memory_order_release);
-    kept_.push_back({&cell, std::move(room)});
+    kept_.push_back({&cell, std::move(room), 0});
     return kept_.back().depths.get();
 }
 
 // A quarter of those kept, but none that a visit which lasts may have asked for.
 void ShadowCellStore::forget_oldest() {
-    const auto asked = [](const Kept& kept) { return kept.cell->asked_.load(std::memory_order_relaxed); };
+    // Others may ask meanwhile, and an order that changes is none.
+    for (Kept& kept : kept_) kept.asked = kept.cell->asked_.load(std::memory_order_relaxed);
     const auto last = kept_.begin() + static_cast<std::ptrdiff_t>(kept_.size() / 4);
-    std::nth_element(kept_.begin(), last, kept_.end(),
-                     [&](const Kept& a, const Kept& b) { return asked(a) < asked(b); });
+    std::nth_element(kept_.begin(), last, kept_.end(), [](const Kept& a, const Kept& b) { return a.asked < b.asked; });
     const std::uint32_t now = now_.load(std::memory_order_relaxed), oldest = visits_.empty() ? now : *visits_.begin();
-    const auto stay = std::partition(kept_.begin(), last, [&](const Kept& kept) { return asked(kept) < oldest; });
+    const auto stay = std::partition(kept_.begin(), last, [&](const Kept& kept) { return kept.asked < oldest; });
     for (auto it = kept_.begin(); it != stay; ++it) {
         it->cell->depths_.store(nullptr, std::memory_order_relaxed);
         forgotten_.push_back({now + 1, std::move(it->depths)});

@@ -59,6 +59,7 @@ class ShadowCellStore {
     struct Kept {
         Cell* cell;
         Room depths;
+        std::uint32_t asked = 0;  // as it was when the oldest were last looked for
     };
     struct Forgotten {
         std::uint32_t before;  // visits with a lower number may still read it

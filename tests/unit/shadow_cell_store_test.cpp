@@ -75,7 +75,7 @@ TEST(ShadowCellStore, ThreadsSeeWhatTheyAskedFor) {
     std::vector<ShadowCellStore::Cell> cells(64);
     ShadowCellStore store(kFloats, 8);
     std::atomic<int> wrong = 0;
-    parallel_for(2000, [&](std::size_t n) {
+    parallel_for(100000, [&](std::size_t n) {
         support::Random random(static_cast<std::uint32_t>(n));
         const ShadowCellStore::Visit visit(store);
         std::vector<std::pair<std::size_t, const float*>> given;

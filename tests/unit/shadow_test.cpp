@@ -240,8 +240,8 @@ TEST(Shadows, CellsThatWereForgottenAreDrawnTheSameAgain) {
     const Shadows& shadows = *stage.shadows;
     constexpr int kWidth = 2048, kCells = kWidth / kCellSize;
     ShadowCellStore few(ShadowSamples::kPerCell, 2), all(ShadowSamples::kPerCell, 10000);
-    const ShadowMap forgetful(shadows.world(), stage.frame, shadows.samples(), few, view, kWidth);
-    const ShadowMap keeping(shadows.world(), stage.frame, shadows.samples(), all, view, kWidth);
+    const ShadowMap forgetful(shadows.world(), shadows.samples(), few, view, kWidth);
+    const ShadowMap keeping(shadows.world(), shadows.samples(), all, view, kWidth);
     int hits = 0;
     for (int round = 0; round < 2; ++round)
         for (int cell = 0; cell < 64; ++cell) {
