@@ -230,29 +230,27 @@ HWY_INLINE Mask in_box(F f, const CellCentre& centre, const Tested& tested, cons
     return in_box(f, centre, tested.T, hx, hy);
 }
 
+// Whether a corner at depth z that moves by dz may lie beyond near or far.
+inline bool may_leave_depth_range(const LocalTriangle& T, float z, float dz) {
+    return !(z >= T.z_near && z + dz >= T.z_near && z <= T.z_far && z + dz <= T.z_far);
+}
 // Whether near and far distance must be asked: depths lie between those of the corners, which move monotonically.
 inline bool may_leave_depth_range(const LocalTriangle& T) {
-    const float* q = T.orthographic ? T.qz : T.qw;
-    const float* d = T.orthographic ? T.dz : T.dw;
-    bool within = true;
-    for (int i = 0; i < 3; ++i) {
-        const float z0 = q[i], z1 = q[i] + d[i];
-        within = within && z0 >= T.z_near && z1 >= T.z_near && z0 <= T.z_far && z1 <= T.z_far;
-    }
-    return !within;
+    bool may = false;
+    for (int i = 0; i < 3; ++i)
+        may = may || (T.orthographic ? may_leave_depth_range(T, T.qz[i], T.dz[i])
+                                     : may_leave_depth_range(T, T.qw[i], T.dw[i]));
+    return may;
 }
 // In any of its segments.
 inline bool may_leave_depth_range(const Tested& tested) {
     const LocalTriangle& T = tested.T;
-    bool within = !may_leave_depth_range(T);
     const auto& q = T.orthographic ? tested.batch.qz : tested.batch.qw;
     const auto& d = T.orthographic ? tested.batch.dz : tested.batch.dw;
+    bool may = may_leave_depth_range(T);
     for (int k = tested.k + 1; k < tested.k + tested.count; ++k)
-        for (int i = 0; i < 3; ++i) {
-            const float z0 = q[i][k], z1 = q[i][k] + d[i][k];
-            within = within && z0 >= T.z_near && z1 >= T.z_near && z0 <= T.z_far && z1 <= T.z_far;
-        }
-    return !within;
+        for (int i = 0; i < 3; ++i) may = may || may_leave_depth_range(T, q[i][k], d[i][k]);
+    return may;
 }
 
 // The samples in the lanes of a job, from `lane` on.
