@@ -142,6 +142,7 @@ struct LensInfo {
     std::optional<int> aperture_blades;
     std::optional<std::array<double, 2>> focus_range;  ///< as CameraSettings::focus_range
     std::optional<double> max_foreground_blur, tilt_deg, swing_deg, cats_eye;
+    bool operator==(const LensInfo&) const = default;
 };
 
 struct Camera {

@@ -89,10 +89,12 @@ std::optional<std::pair<Index, std::string_view>> item_of(std::string_view point
     return std::pair(static_cast<Index>(index), pointer.substr(digits + 1));
 }
 
-/// What a pointer moves: a camera's property, or (true) a node's, whose name is left in `path`.
-bool read_pointer(const Scene& scene, std::string_view pointer, Channel& channel, std::string& path) {
+/// What a pointer moves: a camera's property, or (true) a node's, whose name is left in `path`. `copies`: of that
+/// camera, which move with it.
+bool read_pointer(const Document& document, const Scene& scene, std::string_view pointer, Channel& channel,
+                  std::string& path, std::vector<Index>& copies) {
     constexpr std::string_view kFocus = "extras/focusDistance", kFstop = "extras/fstop";
-    const auto camera = item_of(pointer, "/cameras/", scene.cameras.size());
+    const auto camera = item_of(pointer, "/cameras/", document.count("cameras"));
     const auto node = item_of(pointer, "/nodes/", scene.nodes.size());
     const std::string_view property = camera ? camera->second : node ? node->second : "";
     if (property == kFocus || (camera && property == "extensions/EXT_cameras_sensor/lens/focusDistance"))
@@ -109,18 +111,21 @@ bool read_pointer(const Scene& scene, std::string_view pointer, Channel& channel
         return false;
     channel.camera = camera ? camera->first : scene.nodes[static_cast<std::size_t>(node->first)].camera;
     channel.width = 1;
+    for (std::size_t i = document.count("cameras"); camera && i < scene.cameras.size(); ++i)
+        if (document.original_cameras[i] == channel.camera) copies.push_back(static_cast<Index>(i));
     return false;
 }
 
 /// False: the channel moves nothing that is shown, for a reason that was given as a warning.
-bool read_target(Document& document, const Scene& scene, const Object& object, Channel& channel) {
+bool read_target(Document& document, const Scene& scene, const Object& object, Channel& channel,
+                 std::vector<Index>& copies) {
     const Object target = object.child("target");
     channel.node = target.index("node", "nodes");
     if (!target.has("path")) target.fail("has no path");
     std::string path = target.text("path");
     if (path == "pointer" && target.has_extension("KHR_animation_pointer")) {
         const std::string pointer = target.extension("KHR_animation_pointer").text("pointer");
-        if (!read_pointer(scene, pointer, channel, path)) {
+        if (!read_pointer(document, scene, pointer, channel, path, copies)) {
             if (channel.camera == kNone)
                 document.warn(fmt::format("{} moves {}, which is not supported; it does not move", target.where(),
                                           pointer.empty() ? "nothing" : pointer));
@@ -174,7 +179,8 @@ Animation read_animation(Document& document, const Scene& scene, const Object& o
         if (index >= samplers.size())
             part.fail(fmt::format("refers to sampler {}, but there are {}", index, samplers.size()));
         Channel channel;
-        if (!read_target(document, scene, part, channel)) continue;
+        std::vector<Index> copies;
+        if (!read_target(document, scene, part, channel, copies)) continue;
         const Object& sampler = samplers[index];
         channel.interpolation = sampler_interpolation(sampler);
         channel.times = times[index];
@@ -185,6 +191,11 @@ Animation read_animation(Document& document, const Scene& scene, const Object& o
             continue;
         }
         animation.duration = std::max(animation.duration, static_cast<double>(channel.times.back()));
+        for (const Index copy : copies) {
+            if (!targets.emplace(kNone, copy, channel.path).second) continue;
+            animation.channels.push_back(channel);
+            animation.channels.back().camera = copy;
+        }
         animation.channels.push_back(std::move(channel));
     }
     return animation;

@@ -98,14 +98,16 @@ void read_cameras(Document& document, Scene& scene) {
         }
         read_lens(document, object, camera.lens);
         scene.cameras.push_back(std::move(camera));
+        document.original_cameras.push_back(static_cast<Index>(i));
     }
 }
 
 void check_lenses(Document& document, const Scene& scene) {
     for (std::size_t i = 0; i < scene.cameras.size(); ++i)
         if (!scene.cameras[i].perspective && scene.cameras[i].lens.fstop)
-            document.warn(document.item("cameras", "camera", i).where() +
-                          " is orthographic, so it has no fstop: it sees sharply without --lens-radius");
+            document.warn(
+                document.item("cameras", "camera", static_cast<std::size_t>(document.original_cameras[i])).where() +
+                " is orthographic, so it has no fstop: it sees sharply without --lens-radius");
 }
 
 void read_lights(Document& document, Scene& scene) {

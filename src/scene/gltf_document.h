@@ -81,7 +81,8 @@ struct Document {
     std::vector<Buffer> buffers;
     std::vector<std::vector<std::uint8_t>> decompressed;  ///< storage of the views that were compressed
     std::vector<View> views;
-    std::vector<int> largest_joints;  ///< that vertices of each mesh name; kNone for a mesh without joints
+    std::vector<int> largest_joints;      ///< that vertices of each mesh name; kNone for a mesh without joints
+    std::vector<Index> original_cameras;  ///< of each of Scene::cameras: which of the file's it is a copy of, or is
     std::vector<std::string> warnings;
     std::set<std::string> warned;
     mutable std::size_t decoded = 0;  ///< numbers read through accessors so far

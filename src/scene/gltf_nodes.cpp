@@ -79,7 +79,32 @@ void read_instances(Document& document, const Object& object, Node& node) {
     }
 }
 
-void read_node(Document& document, Scene& scene, const Object& object, Node& node) {
+/// What nodes say of the lenses of the cameras they hold. Nodes that hold the same camera share it unless they say
+/// different things: then the later one gets a copy.
+class NodeLenses {
+  public:
+    explicit NodeLenses(const Scene& scene) : cameras_(scene.cameras), held_(scene.cameras.size(), false) {}
+
+    void read(Document& document, const Object& object, Scene& scene, Node& node) {
+        const auto index = static_cast<std::size_t>(node.camera);
+        Camera camera = cameras_[index];
+        read_lens(document, object, camera.lens);
+        if (!held_[index]) {
+            held_[index] = true;
+            scene.cameras[index] = std::move(camera);
+        } else if (!(camera.lens == scene.cameras[index].lens)) {
+            document.original_cameras.push_back(node.camera);
+            node.camera = static_cast<Index>(scene.cameras.size());
+            scene.cameras.push_back(std::move(camera));
+        }
+    }
+
+  private:
+    std::vector<Camera> cameras_;  // as the file has them
+    std::vector<bool> held_;       // by a node before
+};
+
+void read_node(Document& document, Scene& scene, const Object& object, NodeLenses& lenses, Node& node) {
     node.name = object.text("name");
     node.children = object.indices("children", "nodes");
     read_transform(document, object, node);
@@ -100,7 +125,7 @@ void read_node(Document& document, Scene& scene, const Object& object, Node& nod
         }
         node.weights.resize(targets, 0.0f);
     }
-    if (node.camera != kNone) read_lens(document, object, scene.cameras[static_cast<std::size_t>(node.camera)].lens);
+    if (node.camera != kNone) lenses.read(document, object, scene, node);
     if (object.has_extension("KHR_lights_punctual")) {
         const Object light = object.extension("KHR_lights_punctual");
         const std::size_t index = light.required_size("light");
@@ -196,8 +221,9 @@ void read_background(Document& document, const Object& object, Scene& scene) {
 
 void read_nodes(Document& document, Scene& scene) {
     scene.nodes.resize(document.count("nodes"));
+    NodeLenses lenses(scene);
     for (std::size_t i = 0; i < scene.nodes.size(); ++i)
-        read_node(document, scene, document.item("nodes", "node", i), scene.nodes[i]);
+        read_node(document, scene, document.item("nodes", "node", i), lenses, scene.nodes[i]);
     link_parents(document, scene);
 }
 

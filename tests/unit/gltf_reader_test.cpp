@@ -245,6 +245,45 @@ TEST_F(GltfReader, LensAndShutterComeFromExtras) {
     EXPECT_TRUE(mentions(scene.warnings, "sensorWidth"));
 }
 
+TEST_F(GltfReader, NodesThatShareACameraHaveTheirOwnLenses) {
+    file.json["cameras"] = json::array(
+        {{{"type", "perspective"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}, {"extras", {{"shutter", 0.25}}}}});
+    file.node({{"camera", 0}, {"extras", {{"fstop", 2.8}}}});
+    file.node({{"camera", 0}});
+    file.node({{"camera", 0}, {"extras", {{"fstop", 2.8}}}});
+    file.node({{"camera", 0}, {"extras", {{"fstop", 16}, {"focusDistance", 3}}}});
+    const int times = file.floats("SCALAR", {0, 1});
+    const int angles = file.floats("SCALAR", {0.7f, 0.5f}), stops = file.floats("SCALAR", {16, 8});
+    const auto channel = [](int sampler, const char* pointer) {
+        return json{
+            {"sampler", sampler},
+            {"target", {{"path", "pointer"}, {"extensions", {{"KHR_animation_pointer", {{"pointer", pointer}}}}}}}};
+    };
+    file.json["animations"] = {
+        {{"samplers", {{{"input", times}, {"output", angles}}, {{"input", times}, {"output", stops}}}},
+         {"channels", {channel(0, "/cameras/0/perspective/yfov"), channel(1, "/nodes/3/extras/fstop")}}}};
+    const Scene scene = load();
+    const auto lens = [&](std::size_t node) {
+        return scene.cameras[static_cast<std::size_t>(scene.nodes[node].camera)].lens;
+    };
+    EXPECT_EQ(scene.cameras.size(), 3u);
+    EXPECT_EQ(scene.nodes[0].camera, 0);
+    EXPECT_EQ(scene.nodes[2].camera, 0);
+    EXPECT_EQ(lens(0).fstop, 2.8);
+    EXPECT_FALSE(lens(1).fstop.has_value());
+    EXPECT_EQ(lens(3).fstop, 16);
+    EXPECT_EQ(lens(3).focus_distance, 3);
+    for (std::size_t node : {0, 1, 3}) EXPECT_EQ(lens(node).shutter, 0.25);
+    // The angle of all of them changes, the f-number of one.
+    std::vector<std::pair<Index, ChannelPath>> moved;
+    for (const Channel& c : scene.animations[0].channels) moved.emplace_back(c.camera, c.path);
+    std::sort(moved.begin(), moved.end());
+    EXPECT_EQ(
+        moved,
+        (std::vector<std::pair<Index, ChannelPath>>{
+            {0, ChannelPath::kYfov}, {1, ChannelPath::kYfov}, {2, ChannelPath::kYfov}, {2, ChannelPath::kFstop}}));
+}
+
 TEST_F(GltfReader, AnOrthographicCameraHasNoFstop) {
     file.json["cameras"] = json::array(
         {{{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0.1}, {"zfar", 9}}}}});
