@@ -102,26 +102,36 @@ std::uint64_t blocks_in_tile(const TileState& state, const BinnedTriangle& binne
     return blocks_of(binned, state.work.tile, state.arrangement.block_size) & state.tile_blocks;
 }
 
-// The triangle in `count` segments from the batch's k on, all of which reach the camera plane.
-void cover_at_camera_plane(TileState& state, BlurBatch& batch, int k, int count, const CullTest& camera_plane_test) {
+// The work list of a triangle in `count` segments from the batch's k on. find_blocks(segment, blocks, masks) gets the
+// blocks that one's bounds reach, returns those in which it may be hit and writes which of them by stratum.
+template <class FindBlocks>
+std::size_t list_segments(TileState& state, const BlurBatch& batch, int k, int count, const FindBlocks& find_blocks) {
     HWY_ALIGN std::uint64_t masks[kMaxStrata];
-    LocalTriangle first;
     std::uint64_t blocks_of_all = 0;
     float nearest = batch.nearest[k];
     std::fill(state.masks, state.masks + state.stratum_count, 0);
     for (int segment = k; segment < k + count; ++segment) {
-        const LocalTriangle T = at_camera_plane(state, batch, segment);
-        if (segment == k) first = T;
-        for (int side = 0; side < 4; ++side) batch.box[side][segment] = T.box[side];
-        const std::uint64_t blocks =
-            blocks_at_camera_plane(T, camera_plane_test, static_cast<float>(state.work.frame.view.lens.ratio),
-                                   state.block_size, blocks_in_tile(state, *batch.binned[segment]));
-        StratumLimits(state, batch.segment[segment], batch.segments[segment]).all_blocks_in_time(masks);
+        const std::uint64_t blocks = find_blocks(segment, blocks_in_tile(state, *batch.binned[segment]), masks);
         for (int s = 0; s < state.stratum_count; ++s) state.masks[s] |= masks[s] & blocks;
         blocks_of_all |= blocks;
         nearest = std::min(nearest, batch.nearest[segment]);
     }
-    const std::size_t jobs = list_jobs(state, state.masks, blocks_of_all, nearest);
+    return list_jobs(state, state.masks, blocks_of_all, nearest);
+}
+
+// The triangle in `count` segments from the batch's k on, all of which reach the camera plane.
+void cover_at_camera_plane(TileState& state, BlurBatch& batch, int k, int count, const CullTest& camera_plane_test) {
+    LocalTriangle first;
+    const std::size_t jobs =
+        list_segments(state, batch, k, count, [&](int segment, std::uint64_t blocks, std::uint64_t* masks) HWY_ATTR {
+            const LocalTriangle T = at_camera_plane(state, batch, segment);
+            if (segment == k) first = T;
+            for (int side = 0; side < 4; ++side) batch.box[side][segment] = T.box[side];
+            blocks = blocks_at_camera_plane(T, camera_plane_test, static_cast<float>(state.work.frame.view.lens.ratio),
+                                            state.block_size, blocks);
+            StratumLimits(state, batch.segment[segment], batch.segments[segment]).all_blocks_in_time(masks);
+            return blocks;
+        });
     const Tested tested{batch, k, count, first};
     choose_kind(state, tested)(state, tested, false, jobs);
 }
@@ -146,18 +156,12 @@ void cover_triangle(TileState& state, const BlurBatch& batch, int k) {
 
 // The same in `count` segments at once.
 void cover_segments(TileState& state, const BlurBatch& batch, int k, int count) {
-    HWY_ALIGN std::uint64_t masks[kMaxStrata];
-    std::uint64_t blocks_of_all = 0;
-    float nearest = batch.nearest[k];
-    std::fill(state.masks, state.masks + state.stratum_count, 0);
-    for (int segment = k; segment < k + count; ++segment) {
-        const std::uint64_t blocks = blocks_in_tile(state, *batch.binned[segment]);
-        blocks_of_strata(state, batch, segment, blocks, masks);
-        for (int s = 0; s < state.stratum_count; ++s) state.masks[s] |= masks[s] & blocks;
-        blocks_of_all |= blocks;
-        nearest = std::min(nearest, batch.nearest[segment]);
-    }
-    cover_listed(state, batch, k, count, list_jobs(state, state.masks, blocks_of_all, nearest));
+    const std::size_t jobs =
+        list_segments(state, batch, k, count, [&](int segment, std::uint64_t blocks, std::uint64_t* masks) HWY_ATTR {
+            blocks_of_strata(state, batch, segment, blocks, masks);
+            return blocks;
+        });
+    cover_listed(state, batch, k, count, jobs);
 }
 
 void cover_one_by_one(TileState& state, BlurBatch& batch, const CullTest& camera_plane_test) {
