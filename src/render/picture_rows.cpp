@@ -3,14 +3,21 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/parallel.h"
+
 namespace pentaprism {
 namespace {
 
-// Tallest band of rows whose film stays small whatever the width; a usual picture is a single band.
-int band_rows(const PixelRect& rect) {
-    constexpr int kFilmPixels = 1 << 23;
-    const int rows = std::max(1, kFilmPixels / std::max(1, rect.x1 - rect.x0) / kCellSize) * kCellSize;
-    return std::min(rows, (rect.y1 - rect.y0 + 2 * kCellSize - 1) / kCellSize * kCellSize + kCellSize);
+// Rows of a band of tiles. All threads wait at its end for the last tile, so it holds many for each of them; but its
+// film stays small, however many threads and whatever the width. The bytes of a file with output variables depend on
+// the bands, so these do not depend on the threads then.
+int band_rows(const PixelRect& rect, bool has_aovs) {
+    constexpr int kFilmPixels = 1 << 23, kTilesForEachThread = 128, kTilesWithAovs = 512;
+    const int width = std::max(1, rect.x1 - rect.x0), tiles_a_row = (width + kCellSize - 1) / kCellSize;
+    const int tiles = has_aovs ? kTilesWithAovs : kTilesForEachThread * thread_count();
+    const int picture = (rect.y1 - rect.y0 + 2 * kCellSize - 1) / kCellSize + 1;
+    const int most = std::max(1, kFilmPixels / width / kCellSize);
+    return std::min({(tiles + tiles_a_row - 1) / tiles_a_row, picture, most}) * kCellSize;
 }
 
 }  // namespace
@@ -30,9 +37,9 @@ PixelRect rendered_part(const FrameInfo& info, int reach) {
 
 PictureRows::PictureRows(const FrameInfo& info, int reach, double exposure, RowSink& sink)
     : part_(delivered_part(info)),
-      band_rows_(band_rows(part_)),
-      film_({part_.x0, part_.y0, part_.x1, part_.y1, band_rows_, reach, exposure}),
       has_aovs_(!info.aovs.empty()),
+      band_rows_(band_rows(part_, has_aovs_)),
+      film_({part_.x0, part_.y0, part_.x1, part_.y1, band_rows_, reach, exposure}),
       aovs_(channel_count(info.aovs), part_.x0, part_.x1, band_rows_ + 2 * reach + 1),
       sink_(sink) {
     sink_.begin(info);

@@ -28,9 +28,9 @@ class PictureRows {
     void deliver(int rendered_to, bool last);
 
     PixelRect part_;
+    bool has_aovs_;
     int band_rows_;
     Film film_;
-    bool has_aovs_;
     AovFilm aovs_;
     RowSink& sink_;
 };

@@ -26,4 +26,10 @@ import json
 peak = json.load(open("lights.json"))["peak_mb"]
 print(f"21 shadow maps: {peak:.0f} MB in all")
 assert 0 < peak < 300'
+succeeds render builtin:hand -r 3840x2160 -q -s 1 --shadows off -t 2 -o large.exr --stats large.json
+check "3840x2160: the film of a few rows of tiles, below 150 MB in all" python3 -c '
+import json
+peak = json.load(open("large.json"))["peak_mb"]
+print(f"3840x2160: {peak:.0f} MB in all")
+assert 0 < peak < 150'
 finish
