@@ -33,9 +33,9 @@ int level_width(const View& view) {
     return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::clamp(reach, 2048.0, 32768.0))));
 }
 
-// 48 MB for 1280 pixels: what some rows of tiles ask of several lights. Half of it draws as few cells twice.
+// 96 MB for 1280 pixels: what some rows of tiles ask of several lights (docs/develop/performance.md, Memory).
 std::size_t cells_kept(const View& view) {
-    return 3072 * static_cast<std::size_t>(std::max(view.width, 1280)) / 1280;
+    return 6144 * static_cast<std::size_t>(std::max(view.width, 1280)) / 1280;
 }
 
 bool is_around(const PosedLight& light) {
