@@ -193,6 +193,7 @@ Animation read_animation(Document& document, const Scene& scene, const Object& o
         animation.duration = std::max(animation.duration, static_cast<double>(channel.times.back()));
         for (const Index copy : copies) {
             if (!targets.emplace(kNone, copy, channel.path).second) continue;
+            document.spend(channel.times.size() + channel.values.size());
             animation.channels.push_back(channel);
             animation.channels.back().camera = copy;
         }

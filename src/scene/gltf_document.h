@@ -90,7 +90,7 @@ struct Document {
     [[noreturn]] void fail(const std::string& what) const;
     /// Adds a warning, once.
     void warn(const std::string& what);
-    /// Counts numbers that are about to be decoded; throws when a file asks for absurdly many.
+    /// Counts numbers that are about to be decoded or copied; throws when a file asks for absurdly many.
     void spend(std::size_t components) const;
     /// Number of elements of a root array, 0 when it is absent.
     std::size_t count(const char* list) const;

@@ -83,25 +83,29 @@ void read_instances(Document& document, const Object& object, Node& node) {
 /// different things: then the later one gets a copy.
 class NodeLenses {
   public:
-    explicit NodeLenses(const Scene& scene) : cameras_(scene.cameras), held_(scene.cameras.size(), false) {}
+    explicit NodeLenses(const Scene& scene) : held_(scene.cameras.size(), false) {
+        for (const Camera& camera : scene.cameras) lenses_.push_back(camera.lens);
+    }
 
     void read(Document& document, const Object& object, Scene& scene, Node& node) {
         const auto index = static_cast<std::size_t>(node.camera);
-        Camera camera = cameras_[index];
-        read_lens(document, object, camera.lens);
+        LensInfo lens = lenses_[index];
+        read_lens(document, object, lens);
         if (!held_[index]) {
             held_[index] = true;
-            scene.cameras[index] = std::move(camera);
-        } else if (!(camera.lens == scene.cameras[index].lens)) {
+            scene.cameras[index].lens = lens;
+        } else if (!(lens == scene.cameras[index].lens)) {
+            document.spend(scene.cameras[index].name.size());
             document.original_cameras.push_back(node.camera);
             node.camera = static_cast<Index>(scene.cameras.size());
-            scene.cameras.push_back(std::move(camera));
+            scene.cameras.push_back(Camera(scene.cameras[index]));
+            scene.cameras.back().lens = lens;
         }
     }
 
   private:
-    std::vector<Camera> cameras_;  // as the file has them
-    std::vector<bool> held_;       // by a node before
+    std::vector<LensInfo> lenses_;  // as the file's cameras have them
+    std::vector<bool> held_;        // by a node before
 };
 
 void read_node(Document& document, Scene& scene, const Object& object, NodeLenses& lenses, Node& node) {

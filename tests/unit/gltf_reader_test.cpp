@@ -284,6 +284,14 @@ TEST_F(GltfReader, NodesThatShareACameraHaveTheirOwnLenses) {
             {0, ChannelPath::kYfov}, {1, ChannelPath::kYfov}, {2, ChannelPath::kYfov}, {2, ChannelPath::kFstop}}));
 }
 
+TEST_F(GltfReader, LensesOfNodesDoNotCopyACameraWithoutBound) {
+    file.json["cameras"] = json::array({{{"type", "perspective"},
+                                         {"name", std::string(std::size_t{1} << 20, 'n')},
+                                         {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}}});
+    for (int i = 0; i < 100; ++i) file.node({{"camera", 0}, {"extras", {{"fstop", 1 + i}}}});
+    EXPECT_THROW(load(), Error);
+}
+
 TEST_F(GltfReader, AnOrthographicCameraHasNoFstop) {
     file.json["cameras"] = json::array(
         {{{"type", "orthographic"}, {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0.1}, {"zfar", 9}}}}});
